@@ -1,0 +1,23 @@
+# The packages BoneTK is built on, found once for the whole tree. BoneTKConfig.cmake.in names the same ones.
+set(BONETK_ITK_COMPONENTS
+    ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOPNG ITKIOGDCM ITKIONRRD ITKImageGrid ITKImageFunction
+    ITKImageIntensity ITKImageFeature ITKSmoothing ITKThresholding ITKDistanceMap ITKConnectedComponents
+    ITKBinaryMathematicalMorphology ITKPath ITKTransform)
+set(BONETK_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOPLY FiltersCore)
+
+# GDCM's package configuration names programs that Debian ships apart and says so at length; nothing here runs them.
+set(_bonetk_loglevel "${CMAKE_MESSAGE_LOG_LEVEL}")
+set(CMAKE_MESSAGE_LOG_LEVEL ERROR)
+find_package(ITK 5.2 REQUIRED COMPONENTS ${BONETK_ITK_COMPONENTS})
+set(CMAKE_MESSAGE_LOG_LEVEL "${_bonetk_loglevel}")
+find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json REQUIRED)
+find_package(Boost REQUIRED)
+find_package(Threads REQUIRED)
+
+if(BONETK_SANITIZE)
+  # Eigen and ITK are not instrumented, which the address sanitizer allows.
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()

@@ -1,0 +1,110 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDensityHierarchy_h
+#define boneDensityHierarchy_h
+
+#include "boneDensityMesh.h"
+
+#include <itkDataObject.h>
+#include <itkObjectFactory.h>
+
+#include <vector>
+
+namespace bone
+{
+/** \class DensityHierarchy
+ * \brief Levels of one density model from fine to coarse (paper 4); a level's points are a subset of the level before.
+ */
+template <typename TMesh = DensityMesh<double>>
+class DensityHierarchy : public itk::DataObject
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(DensityHierarchy);
+  using Self = DensityHierarchy;
+  using Superclass = itk::DataObject;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(DensityHierarchy, itk::DataObject);
+
+  using MeshType = TMesh;
+
+  /** One level and how it was made. */
+  struct Level
+  {
+    typename TMesh::Pointer mesh;
+    /** Id in the level before of each point; empty for the first level. */
+    std::vector<IdType> parentPoint;
+    /** Bound asked for on the density error, in density units; negative: none. */
+    double densityErrorBound{ -1.0 };
+    /** Root mean square density difference to the first level, in density units (paper 4.3). */
+    double densityError{ 0.0 };
+    /** Largest distance of a boundary or interface vertex removed so far to the level's surface, mm. */
+    double surfaceError{ 0.0 };
+    /** Why the simplification of this level ended ("tetrahedra reached", "density error bound", ...). */
+    std::string stopReason;
+  };
+
+  const std::vector<Level> &
+  GetLevels() const
+  {
+    return m_Levels;
+  }
+  void
+  SetLevels(std::vector<Level> levels)
+  {
+    m_Levels = std::move(levels);
+    this->Modified();
+  }
+  std::size_t
+  GetNumberOfLevels() const
+  {
+    return m_Levels.size();
+  }
+  const TMesh *
+  GetMesh(std::size_t level) const
+  {
+    return m_Levels.at(level).mesh;
+  }
+
+  void
+  Initialize() override
+  {
+    Superclass::Initialize();
+    m_Levels.clear();
+  }
+  void
+  Graft(const itk::DataObject * data) override
+  {
+    const auto * other = dynamic_cast<const Self *>(data);
+    if (data != nullptr && other == nullptr)
+    {
+      itkExceptionMacro("Cannot graft a " << data->GetNameOfClass() << " onto a DensityHierarchy.");
+    }
+    Superclass::Graft(data);
+    if (other != nullptr)
+    {
+      m_Levels = other->m_Levels;
+    }
+  }
+
+protected:
+  DensityHierarchy() = default;
+  ~DensityHierarchy() override = default;
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override
+  {
+    Superclass::PrintSelf(os, indent);
+    for (std::size_t i = 0; i < m_Levels.size(); ++i)
+    {
+      os << indent << "Level " << i + 1 << ": " << m_Levels[i].mesh->GetNumberOfTetrahedra() << " tetrahedra\n";
+    }
+  }
+
+private:
+  std::vector<Level> m_Levels;
+};
+} // namespace bone
+
+#endif
