@@ -1,0 +1,51 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSurfaceGrid_h
+#define boneSurfaceGrid_h
+
+#include "boneTypes.h"
+
+#include <unordered_map>
+#include <vector>
+
+namespace bone
+{
+using TriangleIds = std::array<IdType, 3>;
+
+/** \brief Whether two triangles, given by point ids, meet elsewhere than in the points and edges they share by id.
+ *
+ * Exact; touching counts. Two triangles on the same three points meet. */
+bool
+TrianglesCross(const TriangleIds & s, const TriangleIds & t, const std::vector<Vector3> & points);
+
+/** \class SurfaceGrid
+ * \brief The triangles of a surface in a hash grid: finds whether a changed triangle would pass through the others.
+ *
+ * A triangle is taken out with the coordinates it was put in with. */
+class SurfaceGrid
+{
+public:
+  /** \param cellSize  mm, best near the triangles' mean edge length. */
+  explicit SurfaceGrid(double cellSize);
+
+  void
+  Insert(const TriangleIds & triangle, const std::vector<Vector3> & points);
+  void
+  Erase(const TriangleIds & triangle, const std::vector<Vector3> & points);
+
+  /** Whether the triangle crosses one in the grid, other than those that have point `ignored`. */
+  bool
+  Crosses(const TriangleIds & triangle, IdType ignored, const std::vector<Vector3> & points) const;
+
+private:
+  double                                                      m_Scale;
+  std::unordered_map<std::uint64_t, std::vector<TriangleIds>> m_Cells;
+};
+
+/** Pairs of triangles of a surface that cross, each once, in ascending order: the audit of a whole surface. */
+std::vector<std::array<int, 2>>
+FindCrossingTriangles(const std::vector<TriangleIds> & triangles, const std::vector<Vector3> & points);
+} // namespace bone
+
+#endif

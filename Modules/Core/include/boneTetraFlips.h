@@ -1,0 +1,62 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneTetraFlips_h
+#define boneTetraFlips_h
+
+#include "boneTetraComplex.h"
+
+namespace bone
+{
+/** What a flip did. */
+struct FlipResult
+{
+  MeshOperation       outcome{ MeshOperation::Quality };
+  std::vector<IdType> removed; ///< slots of the cells that were replaced
+  std::vector<IdType> created; ///< slots of the new cells (removed slots are reused)
+};
+
+/** Longest ring of cells around an edge that RemoveEdge looks at. */
+constexpr int MaximumEdgeRing = 9;
+
+/** \brief 2-3 flip: the two cells at face i of cell t become three around the edge that joins their apices.
+ *
+ * Refused where the face belongs to an interface or the boundary, where a new cell would not be positive (exact), and
+ * where the smallest dihedral angle of the touched cells would not rise by more than the factor `1 + gain` (of its
+ * cosine's distance to 1). The mesh is unchanged unless `outcome` is Done. */
+FlipResult
+RemoveFace(TetraComplex & complex, IdType t, int i);
+
+/** \brief Edge removal: the n cells around edge (a, b) become 2 (n - 2); n = 3 is the 3-2 flip, n = 4 the 4-4 flip.
+ *
+ * The ring is triangulated so that the worst new cell is as good as can be (dynamic programming: Klincsek 1980; J. R.
+ * Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral meshes", 2002).
+ * Refused as RemoveFace, for an edge on an interface or the boundary, and for rings over MaximumEdgeRing. */
+FlipResult
+RemoveEdge(TetraComplex & complex, IdType a, IdType b);
+
+/** Cosine of the smallest dihedral angle of a living cell: the larger the worse. */
+double
+CellCosine(const TetraComplex & complex, IdType t);
+
+/** Parameters of \ref ImproveByFlips. */
+struct FlipParameters
+{
+  double targetAngle{ 0.35 };    ///< rad; cells whose smallest dihedral angle is below are looked at
+  int    maximumPasses{ 6 };     ///< each pass goes over all such cells
+  bool   keepCellCount{ false }; ///< no flip that makes more cells
+};
+
+struct FlipReport
+{
+  std::size_t done{ 0 };
+  std::size_t refused[MeshOperationCount]{};
+};
+
+/** Flips at cells below the target angle, the worst first, until a pass changes nothing. Every flip strictly raises the
+ * smallest angle of the cells it touches. `changed`, where given, gets 1 for every slot that was written. */
+FlipReport
+ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, std::vector<char> * changed = nullptr);
+} // namespace bone
+
+#endif

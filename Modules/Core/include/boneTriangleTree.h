@@ -1,0 +1,69 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneTriangleTree_h
+#define boneTriangleTree_h
+
+#include "boneTypes.h"
+
+#include <vector>
+
+namespace bone
+{
+/** Point of the triangle a, b, c nearest to x. C. Ericson, "Real-Time Collision Detection", 5.1.5. */
+Vector3
+ClosestPointOnTriangle(const Vector3 & x, const Vector3 & a, const Vector3 & b, const Vector3 & c);
+
+/** Point of the segment a, b nearest to x. */
+Vector3
+ClosestPointOnSegment(const Vector3 & x, const Vector3 & a, const Vector3 & b);
+
+/** \class TriangleTree
+ * \brief Nearest points on a set of triangles: a tree of bounding boxes. Segments are triangles with b = c.
+ *
+ * Building is O(n log n), a query O(log n) near the surface. Const use is safe from many threads. */
+class TriangleTree
+{
+public:
+  using Triangle = std::array<Vector3, 3>;
+
+  TriangleTree() = default;
+  explicit TriangleTree(std::vector<Triangle> triangles);
+
+  bool
+  IsEmpty() const
+  {
+    return m_Triangles.empty();
+  }
+
+  struct Nearest
+  {
+    Vector3 point{ Vector3::Zero() };
+    double  squaredDistance{ 0.0 };
+    int     triangle{ -1 }; ///< -1: the tree is empty
+  };
+
+  /** The nearest point; of equally near triangles the one found first in a fixed order. */
+  Nearest
+  FindNearest(const Vector3 & x) const;
+
+private:
+  struct Node
+  {
+    Vector3 lower;
+    Vector3 upper;
+    int     begin;
+    int     end;
+    int     right; // the left child follows its parent; -1: a leaf
+  };
+
+  int
+  Build(int begin, int end);
+
+  std::vector<Triangle> m_Triangles;
+  std::vector<int>      m_Order;
+  std::vector<Node>     m_Nodes;
+};
+} // namespace bone
+
+#endif

@@ -1,0 +1,255 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSurfaceGrid.h"
+
+#include "bonePredicates.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bone
+{
+namespace
+{
+TriangleIds
+Sorted(TriangleIds triangle)
+{
+  std::sort(triangle.begin(), triangle.end());
+  return triangle;
+}
+
+bool
+Has(const TriangleIds & t, IdType p)
+{
+  return t[0] == p || t[1] == p || t[2] == p;
+}
+
+/** Coordinates in the plane of the triangle's largest projection. */
+struct Projection
+{
+  int u;
+  int v;
+
+  Projection(const Vector3 & a, const Vector3 & b, const Vector3 & c)
+  {
+    int axis = 0;
+    (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis);
+    u = (axis + 1) % 3;
+    v = (axis + 2) % 3;
+  }
+  Vector2
+  operator()(const Vector3 & x) const
+  {
+    return { x[u], x[v] };
+  }
+};
+
+bool
+SegmentsMeet2D(const Vector2 & p, const Vector2 & q, const Vector2 & r, const Vector2 & s)
+{
+  const int a = Orient2D(p, q, r), b = Orient2D(p, q, s), c = Orient2D(r, s, p), d = Orient2D(r, s, q);
+  if (a == 0 && b == 0)
+  {
+    const bool u = std::max(p.x(), q.x()) >= std::min(r.x(), s.x()) && std::max(r.x(), s.x()) >= std::min(p.x(), q.x());
+    const bool v = std::max(p.y(), q.y()) >= std::min(r.y(), s.y()) && std::max(r.y(), s.y()) >= std::min(p.y(), q.y());
+    return u && v;
+  }
+  return a * b <= 0 && c * d <= 0;
+}
+
+bool
+SegmentMeetsTriangle(const Vector3 & p, const Vector3 & q, const Vector3 & a, const Vector3 & b, const Vector3 & c)
+{
+  const int op = Orient3D(a, b, c, p), oq = Orient3D(a, b, c, q);
+  if (op * oq > 0)
+  {
+    return false;
+  }
+  if (op == 0 && oq == 0)
+  {
+    const Projection project(a, b, c);
+    const Vector2    p2 = project(p), q2 = project(q), a2 = project(a), b2 = project(b), c2 = project(c);
+    const int        o1 = Orient2D(a2, b2, p2), o2 = Orient2D(b2, c2, p2), o3 = Orient2D(c2, a2, p2);
+    const bool       inside = (o1 >= 0 && o2 >= 0 && o3 >= 0) || (o1 <= 0 && o2 <= 0 && o3 <= 0);
+    return inside || SegmentsMeet2D(p2, q2, a2, b2) || SegmentsMeet2D(p2, q2, b2, c2) || SegmentsMeet2D(p2, q2, c2, a2);
+  }
+  const int o1 = Orient3D(p, q, a, b), o2 = Orient3D(p, q, b, c), o3 = Orient3D(p, q, c, a);
+  return (o1 >= 0 && o2 >= 0 && o3 >= 0) || (o1 <= 0 && o2 <= 0 && o3 <= 0);
+}
+
+bool
+BoxesMeet(const TriangleIds & s, const TriangleIds & t, const std::vector<Vector3> & points)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    const double s0 = points[s[0]][k], s1 = points[s[1]][k], s2 = points[s[2]][k];
+    const double t0 = points[t[0]][k], t1 = points[t[1]][k], t2 = points[t[2]][k];
+    if (std::max({ s0, s1, s2 }) < std::min({ t0, t1, t2 }) || std::max({ t0, t1, t2 }) < std::min({ s0, s1, s2 }))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** Two triangles on one edge cross where they lie in one plane on the same side of it. */
+bool
+FoldsOnto(IdType p, IdType q, IdType apexS, IdType apexT, const std::vector<Vector3> & points)
+{
+  const Vector3 &a = points[p], &b = points[q], &c = points[apexS], &d = points[apexT];
+  if (Orient3D(a, b, c, d) != 0)
+  {
+    return false;
+  }
+  const Projection project(a, b, c);
+  return Orient2D(project(a), project(b), project(c)) * Orient2D(project(a), project(b), project(d)) > 0;
+}
+
+template <typename TVisit>
+void
+ForEachCell(const TriangleIds & t, const std::vector<Vector3> & points, double scale, TVisit visit)
+{
+  const Vector3           lower = points[t[0]].cwiseMin(points[t[1]]).cwiseMin(points[t[2]]) * scale;
+  const Vector3           upper = points[t[0]].cwiseMax(points[t[1]]).cwiseMax(points[t[2]]) * scale;
+  const auto              cell = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
+  constexpr std::uint64_t mask = (1u << 21) - 1;
+  for (std::int64_t i = cell(lower.x()); i <= cell(upper.x()); ++i)
+  {
+    for (std::int64_t j = cell(lower.y()); j <= cell(upper.y()); ++j)
+    {
+      for (std::int64_t k = cell(lower.z()); k <= cell(upper.z()); ++k)
+      {
+        const std::uint64_t key = ((static_cast<std::uint64_t>(i) & mask) << 42) |
+                                  ((static_cast<std::uint64_t>(j) & mask) << 21) |
+                                  (static_cast<std::uint64_t>(k) & mask);
+        if (visit(key))
+        {
+          return;
+        }
+      }
+    }
+  }
+}
+} // namespace
+
+bool
+TrianglesCross(const TriangleIds & s, const TriangleIds & t, const std::vector<Vector3> & points)
+{
+  IdType onlyS[3], onlyT[3], shared[3];
+  int    nS = 0, nT = 0, n = 0;
+  for (IdType p : s)
+  {
+    (Has(t, p) ? shared[n++] : onlyS[nS++]) = p;
+  }
+  for (IdType p : t)
+  {
+    if (!Has(s, p))
+    {
+      onlyT[nT++] = p;
+    }
+  }
+  const auto meets = [&points](IdType p, IdType q, const TriangleIds & u) {
+    return SegmentMeetsTriangle(points[p], points[q], points[u[0]], points[u[1]], points[u[2]]);
+  };
+  switch (n)
+  {
+    case 3:
+      return true;
+    case 2:
+      return FoldsOnto(shared[0], shared[1], onlyS[0], onlyT[0], points);
+    case 1:
+      return meets(onlyS[0], onlyS[1], t) || meets(onlyT[0], onlyT[1], s);
+    default:
+      break;
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    if (meets(s[k], s[(k + 1) % 3], t) || meets(t[k], t[(k + 1) % 3], s))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+SurfaceGrid::SurfaceGrid(double cellSize)
+  : m_Scale(1.0 / cellSize)
+{}
+
+void
+SurfaceGrid::Insert(const TriangleIds & triangle, const std::vector<Vector3> & points)
+{
+  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
+    m_Cells[key].push_back(Sorted(triangle));
+    return false;
+  });
+}
+
+void
+SurfaceGrid::Erase(const TriangleIds & triangle, const std::vector<Vector3> & points)
+{
+  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
+    const auto cell = m_Cells.find(key);
+    if (cell != m_Cells.end())
+    {
+      auto &     content = cell->second;
+      const auto at = std::find(content.begin(), content.end(), Sorted(triangle));
+      if (at != content.end())
+      {
+        *at = content.back();
+        content.pop_back();
+      }
+    }
+    return false;
+  });
+}
+
+bool
+SurfaceGrid::Crosses(const TriangleIds & triangle, IdType ignored, const std::vector<Vector3> & points) const
+{
+  bool crosses = false;
+  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
+    const auto cell = m_Cells.find(key);
+    crosses =
+      cell != m_Cells.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const TriangleIds & t) {
+        return !Has(t, ignored) && BoxesMeet(triangle, t, points) && TrianglesCross(triangle, t, points);
+      });
+    return crosses;
+  });
+  return crosses;
+}
+
+std::vector<std::array<int, 2>>
+FindCrossingTriangles(const std::vector<TriangleIds> & triangles, const std::vector<Vector3> & points)
+{
+  double length = 0.0;
+  for (const TriangleIds & t : triangles)
+  {
+    length += (points[t[1]] - points[t[0]]).norm() / static_cast<double>(triangles.size());
+  }
+  const double                                        scale = length > 0 ? 1.0 / length : 1.0;
+  std::unordered_map<std::uint64_t, std::vector<int>> cells;
+  std::vector<std::array<int, 2>>                     pairs;
+  for (int i = 0; i < static_cast<int>(triangles.size()); ++i)
+  {
+    ForEachCell(triangles[i], points, scale, [&](std::uint64_t key) {
+      auto & cell = cells[key];
+      for (int j : cell)
+      {
+        if (BoxesMeet(triangles[i], triangles[j], points) && TrianglesCross(triangles[i], triangles[j], points))
+        {
+          pairs.push_back({ j, i });
+        }
+      }
+      cell.push_back(i);
+      return false;
+    });
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+} // namespace bone

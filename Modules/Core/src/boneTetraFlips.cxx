@@ -1,0 +1,375 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneTetraFlips.h"
+
+#include "bonePredicates.h"
+#include "boneQualityMeasures.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bone
+{
+namespace
+{
+/** A flip must gain this much in the cosine, so that rounding cannot make flips go round in circles. */
+constexpr double MinimumGain = 1e-6;
+
+double
+Cosine(const TetraComplex & complex, const Id4 & c)
+{
+  const auto & p = complex.Points();
+  return LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+}
+
+bool
+IsPositive(const TetraComplex & complex, const Id4 & c)
+{
+  const auto & p = complex.Points();
+  return Orient3D(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > 0;
+}
+
+FlipResult
+Commit(TetraComplex & complex, std::vector<IdType> removed, const std::vector<Id4> & created, double before)
+{
+  FlipResult result;
+  double     after = -1.0;
+  for (const Id4 & c : created)
+  {
+    after = std::max(after, Cosine(complex, c));
+  }
+  if (!(after < before - MinimumGain))
+  {
+    return result;
+  }
+  for (const Id4 & c : created)
+  {
+    if (!IsPositive(complex, c))
+    {
+      result.outcome = MeshOperation::Orientation;
+      return result;
+    }
+  }
+  result.created = complex.Replace(removed, created);
+  result.removed = std::move(removed);
+  result.outcome = MeshOperation::Done;
+  return result;
+}
+
+/** Cells around edge (a, b) in ring order and the ring's points; cells[k] lies between points k and k + 1. */
+struct Ring
+{
+  std::vector<IdType> cells;
+  std::vector<IdType> points;
+};
+
+/** Walks around the edge. Surface where it lies on one, Quality where the ring is too long. */
+MeshOperation
+FindRing(const TetraComplex & complex, IdType a, IdType b, Ring & ring)
+{
+  const auto & star = complex.Star(a);
+  const auto   first = std::find_if(star.begin(), star.end(), [&](IdType t) { return complex.Has(t, b); });
+  if (first == star.end())
+  {
+    return MeshOperation::Topology;
+  }
+  IdType t = *first;
+  int    from = -1, to = -1;
+  for (int i = 0; i < 4; ++i)
+  {
+    const IdType p = complex.Cell(t)[i];
+    if (p != a && p != b)
+    {
+      (from < 0 ? from : to) = i;
+    }
+  }
+  do
+  {
+    if (complex.FaceSurfaces(t)[from] >= 0)
+    {
+      return MeshOperation::Surface;
+    }
+    if (static_cast<int>(ring.cells.size()) == MaximumEdgeRing)
+    {
+      return MeshOperation::Quality;
+    }
+    ring.cells.push_back(t);
+    ring.points.push_back(complex.Cell(t)[from]);
+    const IdType pivot = complex.Cell(t)[to];
+    // The next cell lies across the face without `from`; there, `pivot` is the point to leave from.
+    t = complex.Neighbors(t)[from];
+    from = complex.LocalIndex(t, pivot);
+    for (to = 0; to == from || complex.Cell(t)[to] == a || complex.Cell(t)[to] == b;)
+    {
+      ++to;
+    }
+  } while (t != ring.cells.front());
+  // Ring points must turn positively around a -> b.
+  const auto & p = complex.Points();
+  if (Orient3D(p[a], p[ring.points[0]], p[ring.points[1]], p[b]) < 0)
+  {
+    std::reverse(ring.points.begin(), ring.points.end());
+  }
+  return MeshOperation::Done;
+}
+
+/** Best triangulation of a ring's polygon: worst cosine of the two cells on each triangle, minimised. */
+class RingTriangulation
+{
+public:
+  RingTriangulation(const TetraComplex & complex, const Ring & ring, IdType a, IdType b)
+    : m_Complex(complex)
+    , m_Points(ring.points)
+    , m_A(a)
+    , m_B(b)
+  {
+    const int n = static_cast<int>(m_Points.size());
+    for (int width = 2; width < n; ++width)
+    {
+      for (int i = 0; i + width < n; ++i)
+      {
+        Solve(i, i + width);
+      }
+    }
+  }
+
+  double
+  Worst() const
+  {
+    return m_Cost[0][m_Points.size() - 1];
+  }
+
+  std::vector<Id4>
+  Cells() const
+  {
+    std::vector<Id4> cells;
+    Collect(0, static_cast<int>(m_Points.size()) - 1, cells);
+    return cells;
+  }
+
+private:
+  std::array<Id4, 2>
+  CellsAt(int i, int k, int j) const
+  {
+    const IdType p = m_Points[i], q = m_Points[k], r = m_Points[j];
+    return { Id4{ m_A, p, q, r }, Id4{ m_B, r, q, p } };
+  }
+
+  void
+  Solve(int i, int j)
+  {
+    m_Cost[i][j] = std::numeric_limits<double>::max();
+    for (int k = i + 1; k < j; ++k)
+    {
+      double cost = std::max(k > i + 1 ? m_Cost[i][k] : -1.0, j > k + 1 ? m_Cost[k][j] : -1.0);
+      for (const Id4 & cell : CellsAt(i, k, j))
+      {
+        const auto & p = m_Complex.Points();
+        const bool   positive = SignedVolume(p[cell[0]], p[cell[1]], p[cell[2]], p[cell[3]]) > 0;
+        cost = std::max(cost, positive ? Cosine(m_Complex, cell) : 2.0);
+      }
+      if (cost < m_Cost[i][j])
+      {
+        m_Cost[i][j] = cost;
+        m_Split[i][j] = k;
+      }
+    }
+  }
+
+  void
+  Collect(int i, int j, std::vector<Id4> & cells) const
+  {
+    if (j < i + 2)
+    {
+      return;
+    }
+    const int k = m_Split[i][j];
+    for (const Id4 & cell : CellsAt(i, k, j))
+    {
+      cells.push_back(cell);
+    }
+    Collect(i, k, cells);
+    Collect(k, j, cells);
+  }
+
+  const TetraComplex &        m_Complex;
+  const std::vector<IdType> & m_Points;
+  IdType                      m_A;
+  IdType                      m_B;
+  double                      m_Cost[MaximumEdgeRing][MaximumEdgeRing];
+  int                         m_Split[MaximumEdgeRing][MaximumEdgeRing];
+};
+
+/** Tries all flips at one cell; the first that is done ends it. */
+class CellImprover
+{
+public:
+  CellImprover(TetraComplex &         complex,
+               const FlipParameters & parameters,
+               FlipReport &           report,
+               std::vector<char> *    changed)
+    : m_Complex(complex)
+    , m_Parameters(parameters)
+    , m_Report(report)
+    , m_Changed(changed)
+  {}
+
+  bool
+  Run(IdType t)
+  {
+    const Id4 cell = m_Complex.Cell(t);
+    for (const auto & edge : TetraEdges)
+    {
+      const IdType a = cell[edge[0]], b = cell[edge[1]];
+      if (m_Parameters.keepCellCount && RingLength(a, b) > 4)
+      {
+        continue;
+      }
+      if (Note(RemoveEdge(m_Complex, a, b)))
+      {
+        return true;
+      }
+    }
+    for (int i = 0; i < 4 && !m_Parameters.keepCellCount; ++i)
+    {
+      if (Note(RemoveFace(m_Complex, t, i)))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+private:
+  std::size_t
+  RingLength(IdType a, IdType b) const
+  {
+    const auto & star = m_Complex.Star(a);
+    return static_cast<std::size_t>(
+      std::count_if(star.begin(), star.end(), [&](IdType t) { return m_Complex.Has(t, b); }));
+  }
+
+  bool
+  Note(const FlipResult & result)
+  {
+    if (result.outcome != MeshOperation::Done)
+    {
+      ++m_Report.refused[static_cast<int>(result.outcome)];
+      return false;
+    }
+    ++m_Report.done;
+    if (m_Changed != nullptr)
+    {
+      m_Changed->resize(m_Complex.Size(), 0);
+      for (IdType t : result.created)
+      {
+        (*m_Changed)[t] = 1;
+      }
+    }
+    return true;
+  }
+
+  TetraComplex &         m_Complex;
+  const FlipParameters & m_Parameters;
+  FlipReport &           m_Report;
+  std::vector<char> *    m_Changed;
+};
+} // namespace
+
+double
+CellCosine(const TetraComplex & complex, IdType t)
+{
+  return Cosine(complex, complex.Cell(t));
+}
+
+FlipResult
+RemoveFace(TetraComplex & complex, IdType t, int i)
+{
+  FlipResult   result;
+  const IdType other = complex.Neighbors(t)[i];
+  if (other < 0 || complex.FaceSurfaces(t)[i] >= 0)
+  {
+    result.outcome = MeshOperation::Surface;
+    return result;
+  }
+  const Id4 cell = complex.Cell(t);
+  IdType    apex = -1;
+  for (int k = 0; k < 4; ++k)
+  {
+    if (complex.Neighbors(other)[k] == t)
+    {
+      apex = complex.Cell(other)[k];
+    }
+  }
+  // The face looks outward from t, so the apex beyond lies on its positive side.
+  std::vector<Id4> created;
+  for (int k = 0; k < 3; ++k)
+  {
+    created.push_back({ cell[TetraFaces[i][k]], cell[TetraFaces[i][(k + 1) % 3]], apex, cell[i] });
+    std::swap(created.back()[0], created.back()[1]);
+  }
+  return Commit(complex, { t, other }, created, std::max(CellCosine(complex, t), CellCosine(complex, other)));
+}
+
+FlipResult
+RemoveEdge(TetraComplex & complex, IdType a, IdType b)
+{
+  FlipResult result;
+  Ring       ring;
+  result.outcome = FindRing(complex, a, b, ring);
+  if (result.outcome != MeshOperation::Done)
+  {
+    return result;
+  }
+  double before = -1.0;
+  for (IdType t : ring.cells)
+  {
+    before = std::max(before, CellCosine(complex, t));
+  }
+  const RingTriangulation triangulation(complex, ring, a, b);
+  if (!(triangulation.Worst() < before - MinimumGain))
+  {
+    result.outcome = triangulation.Worst() >= 2.0 ? MeshOperation::Orientation : MeshOperation::Quality;
+    return result;
+  }
+  return Commit(complex, ring.cells, triangulation.Cells(), before);
+}
+
+FlipReport
+ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, std::vector<char> * changed)
+{
+  FlipReport   report;
+  CellImprover improver(complex, parameters, report, changed);
+  const double limit = std::cos(parameters.targetAngle);
+  for (int pass = 0; pass < parameters.maximumPasses; ++pass)
+  {
+    std::vector<std::pair<double, IdType>> worst;
+    for (IdType t = 0; t < complex.Size(); ++t)
+    {
+      const double cosine = complex.IsAlive(t) ? CellCosine(complex, t) : -1.0;
+      if (cosine > limit)
+      {
+        worst.emplace_back(-cosine, t);
+      }
+    }
+    std::sort(worst.begin(), worst.end());
+    const std::size_t before = report.done;
+    for (const auto & candidate : worst)
+    {
+      if (complex.IsAlive(candidate.second) && CellCosine(complex, candidate.second) > limit)
+      {
+        improver.Run(candidate.second);
+      }
+    }
+    if (report.done == before)
+    {
+      break;
+    }
+  }
+  return report;
+}
+} // namespace bone
