@@ -5,6 +5,7 @@
 #define boneTypes_h
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <cstdint>
