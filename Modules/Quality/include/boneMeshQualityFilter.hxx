@@ -1,0 +1,61 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshQualityFilter_hxx
+#define boneMeshQualityFilter_hxx
+
+#include "boneMeshQualityFilter.h"
+
+namespace bone
+{
+template <typename TMesh>
+void
+MeshQualityFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
+{
+  Superclass::VerifyPreconditions();
+  if (m_Iterations < 0 || m_FairingIterations < 0 || m_Rounds < 0 || m_OptimizationPasses < 0)
+  {
+    itkExceptionMacro("Iterations (" << m_Iterations << "), FairingIterations (" << m_FairingIterations << "), Rounds ("
+                                     << m_Rounds << ") and OptimizationPasses (" << m_OptimizationPasses
+                                     << ") must not be negative.");
+  }
+  if (!(m_DistanceBound >= 0 && std::isfinite(m_DistanceBound)))
+  {
+    itkExceptionMacro("DistanceBound is " << m_DistanceBound << " mm; it must be finite and not negative.");
+  }
+  if (!(m_TargetAngle > 0 && m_TargetAngle < 1.23))
+  {
+    itkExceptionMacro("TargetAngle is " << m_TargetAngle
+                                        << " rad; it must lie between 0 and 1.23, the angle of a regular tetrahedron.");
+  }
+}
+
+template <typename TMesh>
+void
+MeshQualityFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction & progress)
+{
+  ImprovementParameters parameters;
+  parameters.smoothing.iterations = m_Iterations;
+  parameters.smoothing.distanceBound = m_DistanceBound;
+  parameters.smoothing.fairingIterations = m_FairingIterations;
+  parameters.rounds = m_Rounds;
+  parameters.targetAngle = m_TargetAngle;
+  parameters.optimizationPasses = m_OptimizationPasses;
+  m_Report = ImproveMesh(complex, parameters, progress);
+}
+
+template <typename TMesh>
+void
+MeshQualityFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
+{
+  Superclass::PrintSelf(os, indent);
+  os << indent << "Iterations: " << m_Iterations << std::endl;
+  os << indent << "DistanceBound: " << m_DistanceBound << std::endl;
+  os << indent << "FairingIterations: " << m_FairingIterations << std::endl;
+  os << indent << "Rounds: " << m_Rounds << std::endl;
+  os << indent << "TargetAngle: " << m_TargetAngle << std::endl;
+  os << indent << "OptimizationPasses: " << m_OptimizationPasses << std::endl;
+}
+} // namespace bone
+
+#endif

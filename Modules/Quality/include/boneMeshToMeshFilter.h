@@ -1,0 +1,76 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshToMeshFilter_h
+#define boneMeshToMeshFilter_h
+
+#include "boneDensityMesh.h"
+#include "boneSmoothingKernel.h"
+
+#include <itkProcessObject.h>
+
+namespace bone
+{
+/** \class MeshToMeshFilter
+ * \brief Base of the filters that take a layered mesh and give a better one (paper 2.7).
+ *
+ * Input and output are of type TMesh (\ref DensityMesh). The output has no density: a polynomial holds for the cell it
+ * was fitted in, so fit after this. Layers, slices and regions are kept. The work is done in double; where a mesh of
+ * float coordinates cannot hold the result without an inverted cell, itk::ExceptionObject says so.
+ *
+ * Throws itk::ExceptionObject where the input is missing, has no cells, lacks valid face neighbours, or holds cells
+ * that are flat or inverted. */
+template <typename TMesh>
+class MeshToMeshFilter : public itk::ProcessObject
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(MeshToMeshFilter);
+  using Self = MeshToMeshFilter;
+  using Superclass = itk::ProcessObject;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkTypeMacro(MeshToMeshFilter, itk::ProcessObject);
+  using MeshType = TMesh;
+
+  using Superclass::SetInput;
+  void
+  SetInput(const TMesh * mesh);
+  const TMesh *
+  GetInput() const;
+  TMesh *
+  GetOutput();
+  const TMesh *
+  GetOutput() const;
+
+  using Superclass::MakeOutput;
+  itk::DataObject::Pointer
+  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
+
+protected:
+  MeshToMeshFilter();
+  ~MeshToMeshFilter() override = default;
+
+  void
+  GenerateData() final;
+
+  /** Whether an input with flat or inverted cells is an error. */
+  virtual bool
+  NeedsPositiveCells() const
+  {
+    return true;
+  }
+  /** Does the filter's work; \a progress is to be called now and then and throws where the user asked to stop. */
+  virtual void
+  Improve(TetraComplex & complex, const ProgressFunction & progress) = 0;
+
+private:
+  MeshArrays
+  TakeInput() const;
+};
+} // namespace bone
+
+#ifndef ITK_MANUAL_INSTANTIATION
+#include "boneMeshToMeshFilter.hxx"
+#endif
+
+#endif

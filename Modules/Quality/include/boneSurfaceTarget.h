@@ -1,0 +1,44 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSurfaceTarget_h
+#define boneSurfaceTarget_h
+
+#include "boneTetraComplex.h"
+#include "boneTriangleTree.h"
+
+#include <vector>
+
+namespace bone
+{
+/** \class SurfaceTarget
+ * \brief The faired boundary, interfaces and curves of a mesh: where smoothing puts points back (paper 2.7).
+ *
+ * Steps between slices are faired by Taubin's two-step filter (doi:10.1145/218380.218473, lambda 0.5, mu -0.53) along
+ * the surfaces, and along curves where surfaces meet; corners and the inside of flat cuts stay. No point is moved by
+ * more than the bound, so that every point of a target surface lies within the bound of the surface it was made from.
+ * The target is made once and does not move with the mesh. */
+class SurfaceTarget
+{
+public:
+  /** \param distanceBound      mm, not negative; 0: the surfaces as they are.
+   * \param fairingIterations  pairs of Taubin's steps. */
+  SurfaceTarget(const TetraComplex & complex, double distanceBound, int fairingIterations);
+
+  /** The point of p's own surface (dimension 2) or curve (1) that is nearest to x; x itself for an inner point (3), and
+   * p's own place for a corner (0). */
+  Vector3
+  Project(const TetraComplex & complex, IdType p, const Vector3 & x) const;
+
+private:
+  std::vector<Vector3>
+  Fair(const TetraComplex & complex, double distanceBound, int iterations) const;
+  void
+  BuildTrees(const TetraComplex & complex, const std::vector<Vector3> & points);
+
+  std::vector<int>          m_Stratum; ///< #p, index of the tree, -1 for none
+  std::vector<TriangleTree> m_Trees;
+};
+} // namespace bone
+
+#endif

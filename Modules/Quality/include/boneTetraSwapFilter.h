@@ -1,0 +1,68 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneTetraSwapFilter_h
+#define boneTetraSwapFilter_h
+
+#include "boneMeshToMeshFilter.h"
+#include "boneTetraFlips.h"
+
+#include <cmath>
+
+namespace bone
+{
+/** \class TetraSwapFilter
+ * \brief Swaps faces and edges of a tetrahedral mesh where that makes its worst cells better (paper 2.7).
+ *
+ * 2-3, 3-2 and 4-4 flips and edge removal, inside a region only: boundary, interfaces and points stay as they are. Each
+ * flip strictly raises the smallest dihedral angle of the cells it touches, and new cells are positive (exact).
+ * Sequential, the worst cell first: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
+template <typename TMesh = DensityMesh<double>>
+class TetraSwapFilter : public MeshToMeshFilter<TMesh>
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(TetraSwapFilter);
+  using Self = TetraSwapFilter;
+  using Superclass = MeshToMeshFilter<TMesh>;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(TetraSwapFilter, MeshToMeshFilter);
+
+  /** Cells with a dihedral angle below are looked at, rad; default 0.35 (20 degrees). */
+  itkSetMacro(TargetAngle, double);
+  itkGetConstMacro(TargetAngle, double);
+  /** Passes over those cells; a pass without a flip ends it. Default 6. */
+  itkSetMacro(MaximumPasses, int);
+  itkGetConstMacro(MaximumPasses, int);
+  /** What the last run did. */
+  const FlipReport &
+  GetReport() const
+  {
+    return m_Report;
+  }
+
+protected:
+  TetraSwapFilter() = default;
+  ~TetraSwapFilter() override = default;
+  void
+  VerifyPreconditions() ITKv5_CONST override;
+  void
+  Improve(TetraComplex & complex, const ProgressFunction & progress) override;
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+
+private:
+  double     m_TargetAngle{ 0.35 };
+  int        m_MaximumPasses{ 6 };
+  FlipReport m_Report;
+};
+
+extern template class TetraSwapFilter<DensityMesh<double>>;
+} // namespace bone
+
+#ifndef ITK_MANUAL_INSTANTIATION
+#include "boneTetraSwapFilter.hxx"
+#endif
+
+#endif

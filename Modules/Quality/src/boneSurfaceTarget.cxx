@@ -1,0 +1,162 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSurfaceTarget.h"
+
+#include <algorithm>
+#include <map>
+
+namespace bone
+{
+namespace
+{
+constexpr double Lambda = 0.5;
+constexpr double Mu = -0.53;
+constexpr int    NoSurface = -1;
+} // namespace
+
+SurfaceTarget::SurfaceTarget(const TetraComplex & complex, double distanceBound, int fairingIterations)
+  : m_Stratum(complex.Points().size(), -1)
+{
+  BuildTrees(complex, Fair(complex, distanceBound, fairingIterations));
+}
+
+std::vector<Vector3>
+SurfaceTarget::Fair(const TetraComplex & complex, double distanceBound, int iterations) const
+{
+  const std::vector<Vector3> & original = complex.Points();
+  const SurfaceComplex &       surfaces = complex.Surfaces();
+  std::vector<Vector3>         points = original;
+  if (!(distanceBound > 0))
+  {
+    return points;
+  }
+  std::vector<IdType>                    moving;
+  std::vector<std::vector<IdType>>       around;
+  std::vector<TetraComplex::SurfaceFace> faces;
+  for (IdType p = 0; p < static_cast<IdType>(points.size()); ++p)
+  {
+    const int dimension = surfaces.dimension[p];
+    if (dimension != 1 && dimension != 2)
+    {
+      continue;
+    }
+    std::vector<IdType> neighbors = surfaces.curve[p];
+    if (dimension == 2)
+    {
+      complex.SurfaceStar(p, faces);
+      if (surfaces.surfaces[faces.front().surface].flat >= 0)
+      {
+        continue;
+      }
+      for (const auto & face : faces)
+      {
+        neighbors.push_back(face.a);
+      }
+    }
+    moving.push_back(p);
+    around.push_back(std::move(neighbors));
+  }
+  std::vector<Vector3> next(moving.size());
+  for (int step = 0; step < 2 * iterations; ++step)
+  {
+    const double factor = step % 2 == 0 ? Lambda : Mu;
+    for (std::size_t i = 0; i < moving.size(); ++i)
+    {
+      Vector3 mean = Vector3::Zero();
+      for (IdType q : around[i])
+      {
+        mean += points[q] / static_cast<double>(around[i].size());
+      }
+      const Vector3 & x = points[moving[i]];
+      next[i] = x + factor * (mean - x);
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i)
+    {
+      const Vector3 & start = original[moving[i]];
+      const Vector3   shift = next[i] - start;
+      const double    length = shift.norm();
+      points[moving[i]] = length > distanceBound ? Vector3(start + shift * (distanceBound / length)) : next[i];
+    }
+  }
+  return points;
+}
+
+void
+SurfaceTarget::BuildTrees(const TetraComplex & complex, const std::vector<Vector3> & points)
+{
+  const SurfaceComplex & surfaces = complex.Surfaces();
+  // A stratum is named by the surfaces that meet in it: one for a surface, several for a curve.
+  std::map<std::vector<int>, int>                  number;
+  std::vector<std::vector<TriangleTree::Triangle>> content;
+  const auto                                       stratum = [&](const std::vector<int> & name) {
+    const auto found = number.emplace(name, static_cast<int>(content.size()));
+    if (found.second)
+    {
+      content.emplace_back();
+    }
+    return found.first->second;
+  };
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (complex.IsAlive(t) && complex.Carries(t, i))
+      {
+        const Id4 &  c = complex.Cell(t);
+        const auto & f = TetraFaces[i];
+        content[stratum({ complex.FaceSurfaces(t)[i] })].push_back(
+          { points[c[f[0]]], points[c[f[1]]], points[c[f[2]]] });
+      }
+    }
+  }
+  std::vector<TetraComplex::SurfaceFace> faces;
+  for (IdType p = 0; p < static_cast<IdType>(points.size()); ++p)
+  {
+    const int dimension = surfaces.dimension[p];
+    if (dimension != 1 && dimension != 2)
+    {
+      continue;
+    }
+    complex.SurfaceStar(p, faces);
+    std::vector<int> name;
+    for (const auto & face : faces)
+    {
+      name.push_back(face.surface);
+    }
+    std::sort(name.begin(), name.end());
+    name.erase(std::unique(name.begin(), name.end()), name.end());
+    if (dimension == 1)
+    {
+      // A curve may bound the same surface from both sides; it is no surface's stratum then either.
+      name.push_back(NoSurface);
+    }
+    m_Stratum[p] = stratum(name);
+    if (dimension == 1)
+    {
+      for (IdType q : surfaces.curve[p])
+      {
+        if (surfaces.dimension[q] == 0 || p < q)
+        {
+          content[m_Stratum[p]].push_back({ points[p], points[q], points[q] });
+        }
+      }
+    }
+  }
+  for (auto & triangles : content)
+  {
+    m_Trees.emplace_back(std::move(triangles));
+  }
+}
+
+Vector3
+SurfaceTarget::Project(const TetraComplex & complex, IdType p, const Vector3 & x) const
+{
+  const int dimension = complex.Dimension(p);
+  if (dimension == 3)
+  {
+    return x;
+  }
+  return dimension == 0 ? complex.Points()[p] : m_Trees[m_Stratum[p]].FindNearest(x).point;
+}
+} // namespace bone
