@@ -1,0 +1,208 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "bonePhantomModel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bone
+{
+namespace
+{
+/** Beyond this many standard deviations a Gaussian counts as 0: 7e-6 of the step at a surface. */
+constexpr double Tail = 4.35;
+
+/** Integral of the standard normal density up to t. */
+double
+NormalCdf(double t)
+{
+  return 0.5 * std::erfc(-t * M_SQRT1_2);
+}
+
+/** Gaussian measure (standard deviation 1) of { s : value + slope s + curvature s^2 / 2 < 0 }. */
+double
+MeasureBelowZero(double value, double slope, double curvature)
+{
+  const double planar = std::abs(slope) > 1e-12 ? NormalCdf(-value / std::abs(slope)) : (value < 0.0 ? 1.0 : 0.0);
+  if (std::abs(curvature) < 1e-9 * std::abs(slope))
+  {
+    return planar;
+  }
+  const double discriminant = slope * slope - 2.0 * curvature * value;
+  if (!(discriminant > 0.0))
+  {
+    return curvature > 0.0 ? 0.0 : 1.0;
+  }
+  // Stable roots of curvature/2 s^2 + slope s + value.
+  const double q = -(slope + std::copysign(std::sqrt(discriminant), slope));
+  const double a = q / curvature;
+  const double b = q != 0.0 ? 2.0 * value / q : -a;
+  const double between = NormalCdf(std::max(a, b)) - NormalCdf(std::min(a, b));
+  return curvature > 0.0 ? between : 1.0 - between;
+}
+} // namespace
+
+int
+PhantomModel::RegionOf(const Levels & levels)
+{
+  if (!(levels[Periosteal] < 0.0))
+  {
+    return Region::Outside;
+  }
+  if (!(levels[Endosteal] < 0.0))
+  {
+    return Region::Cortical;
+  }
+  return levels[Cavity] < 0.0 ? Region::Medullary : Region::Spongy;
+}
+
+int
+PhantomModel::Region(const Vector3 & x) const
+{
+  return RegionOf(this->EvaluateLevels(x));
+}
+
+double
+PhantomModel::Density(const Vector3 & x) const
+{
+  const Levels levels = this->EvaluateLevels(x);
+  return this->EvaluateMaterials(x, levels)[RegionOf(levels)];
+}
+
+double
+PhantomModel::BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, const Vector3 & sigma) const
+{
+  Gradients       gradients;
+  const Levels    levels = this->EvaluateLevels(x, gradients);
+  const Materials materials = this->EvaluateMaterials(x, levels);
+  double          density = materials[0];
+  for (int i = 0; i < this->GetNumberOfSurfaces(); ++i)
+  {
+    double       inside = levels[i] < 0.0 ? 1.0 : 0.0;
+    const double norm = gradients[i].norm();
+    if (norm > 1e-9)
+    {
+      const Vector3 normal = gradients[i] / norm;
+      const double  spread = (axes.transpose() * normal).cwiseProduct(sigma).norm();
+      if (spread > 0.0 && std::abs(levels[i]) < Tail * spread * this->GetLipschitzBound(i))
+      {
+        const double reach = 1.5 * spread;
+        const double above = this->EvaluateLevels(x + reach * normal)[i];
+        const double below = this->EvaluateLevels(x - reach * normal)[i];
+        const double slope = (above - below) / (2.0 * reach);
+        const double curvature = (above + below - 2.0 * levels[i]) / (reach * reach);
+        inside = MeasureBelowZero(levels[i], slope * spread, curvature * spread * spread);
+      }
+    }
+    density += (materials[i + 1] - materials[i]) * inside;
+  }
+  return density;
+}
+
+Vector3
+PhantomModel::ClosestPoint(int surface, const Vector3 & x) const
+{
+  Gradients  gradients;
+  const auto step = [&](const Vector3 & p) -> Vector3 {
+    const double value = this->EvaluateLevels(p, gradients)[surface];
+    return value / std::max(gradients[surface].squaredNorm(), 1e-12) * gradients[surface];
+  };
+  const auto land = [&](Vector3 p) {
+    for (int i = 0; i < 30; ++i)
+    {
+      const Vector3 move = step(p);
+      p -= move;
+      if (move.squaredNorm() < 1e-18)
+      {
+        break;
+      }
+    }
+    return p;
+  };
+  if (surface >= this->GetNumberOfSurfaces())
+  {
+    return x;
+  }
+  Vector3 foot = land(x);
+  double  best = (x - foot).norm();
+  double  damping = 1.0;
+  for (int i = 0; i < 60 && damping > 1e-4; ++i)
+  {
+    step(foot);
+    const Vector3 normal = gradients[surface].normalized();
+    const Vector3 offset = x - foot;
+    const Vector3 tangential = offset - offset.dot(normal) * normal;
+    if (tangential.norm() < 1e-8)
+    {
+      break;
+    }
+    const Vector3 candidate = land(foot + damping * tangential);
+    const double  distance = (x - candidate).norm();
+    if (distance < best)
+    {
+      foot = candidate;
+      best = distance;
+    }
+    else
+    {
+      damping *= 0.5;
+    }
+  }
+  return foot;
+}
+
+double
+PhantomModel::Distance(int surface, const Vector3 & x) const
+{
+  const double value = this->EvaluateLevels(x)[surface];
+  if (surface >= this->GetNumberOfSurfaces())
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  return std::copysign((x - this->ClosestPoint(surface, x)).norm(), value);
+}
+
+double
+PhantomModel::CorticalThickness(const Vector3 & x) const
+{
+  const Vector3 foot = this->ClosestPoint(Periosteal, x);
+  Gradients     gradients;
+  this->EvaluateLevels(foot, gradients);
+  const Vector3 inward = -gradients[Periosteal].normalized();
+  const auto    isCortical = [&](double depth) {
+    const Levels levels = this->EvaluateLevels(foot + depth * inward);
+    return levels[Periosteal] < 0.0 && levels[Endosteal] >= 0.0;
+  };
+  const double step = 0.05;
+  double       inside = step;
+  while (isCortical(inside + step))
+  {
+    inside += step;
+  }
+  double outside = inside + step;
+  while (outside - inside > 1e-9)
+  {
+    const double middle = 0.5 * (inside + outside);
+    (isCortical(middle) ? inside : outside) = middle;
+  }
+  return outside;
+}
+
+Vector3
+PhantomModel::GetLowerCorner() const
+{
+  return { this->GetExtent(Vector3::UnitX()).lower,
+           this->GetExtent(Vector3::UnitY()).lower,
+           this->GetExtent(Vector3::UnitZ()).lower };
+}
+
+Vector3
+PhantomModel::GetUpperCorner() const
+{
+  return { this->GetExtent(Vector3::UnitX()).upper,
+           this->GetExtent(Vector3::UnitY()).upper,
+           this->GetExtent(Vector3::UnitZ()).upper };
+}
+} // namespace bone

@@ -1,0 +1,273 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "bonePhantomSampler.h"
+
+#include "bonePhantomShapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace bone
+{
+namespace
+{
+/** Standard deviations (mm) below this count as none. */
+constexpr double NoSpread = 1e-6;
+/** Reach of the point spread in standard deviations. */
+constexpr double Tail = 4.35;
+/** Edge of the blocks that are classified as a whole, mm. */
+constexpr double BlockEdge = 2.0;
+
+/** The part of a standard deviation that the closed form takes. */
+double
+AnalyticPart(double sigma)
+{
+  return sigma <= PhantomSampler::AnalyticSigma ? sigma : std::min(0.3, sigma * M_SQRT1_2);
+}
+
+long
+FloorDivide(long a, long b)
+{
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+} // namespace
+
+/** What blocks of a grid are made of: the number of one region, or Mixed where a surface is within `reach`. The blocks
+ * are aligned to index 0, so that they do not depend on the box they are made for. */
+class PhantomSampler::Neighbourhoods
+{
+public:
+  static constexpr signed char Mixed = -1;
+
+  Neighbourhoods(const PhantomModel & model, const PhantomGrid & grid, double reach, const PhantomBlock & box)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      m_Edge[a] = std::max(1L, std::lround(BlockEdge / grid.spacing[a]));
+      m_First[a] = FloorDivide(box.start[a], m_Edge[a]);
+      m_Size[a] = FloorDivide(box.start[a] + static_cast<long>(box.size[a]) - 1, m_Edge[a]) - m_First[a] + 1;
+    }
+    const Vector3 edge(m_Edge[0], m_Edge[1], m_Edge[2]);
+    const double  radius = 0.5 * (edge - Vector3::Ones()).cwiseProduct(grid.spacing).norm();
+    m_Content.reserve(m_Size[0] * m_Size[1] * m_Size[2]);
+    for (long k = 0; k < m_Size[2]; ++k)
+    {
+      for (long j = 0; j < m_Size[1]; ++j)
+      {
+        for (long i = 0; i < m_Size[0]; ++i)
+        {
+          const Vector3 block(m_First[0] + i, m_First[1] + j, m_First[2] + k);
+          const Vector3 centre = block.cwiseProduct(edge) + 0.5 * (edge - Vector3::Ones());
+          m_Content.push_back(Classify(model, grid.At(centre[0], centre[1], centre[2]), radius + reach));
+        }
+      }
+    }
+  }
+
+  signed char
+  operator()(long i, long j, long k) const
+  {
+    const long x = FloorDivide(i, m_Edge[0]) - m_First[0];
+    const long y = FloorDivide(j, m_Edge[1]) - m_First[1];
+    const long z = FloorDivide(k, m_Edge[2]) - m_First[2];
+    return m_Content[(z * m_Size[1] + y) * m_Size[0] + x];
+  }
+
+  /** The region that the ball of the radius about x lies in, or Mixed. */
+  static signed char
+  Classify(const PhantomModel & model, const Vector3 & x, double radius)
+  {
+    const PhantomModel::Levels levels = model.EvaluateLevels(x);
+    if (levels[PhantomModel::Periosteal] > radius * model.GetLipschitzBound(PhantomModel::Periosteal))
+    {
+      return Region::Outside;
+    }
+    for (int s = 0; s < model.GetNumberOfSurfaces(); ++s)
+    {
+      if (std::abs(levels[s]) <= radius * model.GetLipschitzBound(s))
+      {
+        return Mixed;
+      }
+    }
+    return static_cast<signed char>(PhantomModel::RegionOf(levels));
+  }
+
+private:
+  std::array<long, 3>      m_Edge;
+  std::array<long, 3>      m_First;
+  std::array<long, 3>      m_Size;
+  std::vector<signed char> m_Content;
+};
+
+PhantomSampler::PhantomSampler(PhantomModel::Pointer model, const PhantomGrid & grid, const Vector3 & sigma)
+  : m_Model(std::move(model))
+  , m_Grid(grid)
+  , m_Fine(grid)
+{
+  Vector3 first;
+  for (int a = 0; a < 3; ++a)
+  {
+    m_AnalyticSigma[a] = AnalyticPart(sigma[a]);
+    m_Kernels[a] = MakeKernel(grid.spacing[a], sigma[a]);
+    const double factor = static_cast<double>(m_Kernels[a].factor);
+    m_Fine.spacing[a] = grid.spacing[a] / factor;
+    first[a] = 0.5 / factor - 0.5;
+  }
+  m_Fine.origin = grid.At(first[0], first[1], first[2]);
+  m_SoftTissue = m_Model->EvaluateMaterials(grid.origin, m_Model->EvaluateLevels(grid.origin))[Region::Outside];
+}
+
+PhantomSampler::Kernel
+PhantomSampler::MakeKernel(double spacing, double sigma)
+{
+  Kernel       kernel;
+  const double analytic = AnalyticPart(sigma);
+  const double rest = std::sqrt(std::max(0.0, sigma * sigma - analytic * analytic));
+  if (rest < NoSpread)
+  {
+    return kernel;
+  }
+  // A Gaussian sum of samples that are themselves blurred by a Gaussian: with steps of 1.15 standard deviations of the
+  // narrower one its error is below 1e-3 of a step.
+  kernel.factor = std::max(1L, static_cast<long>(std::ceil(spacing / (1.15 * std::min(analytic, rest)))));
+  const double step = spacing / static_cast<double>(kernel.factor);
+  const auto   reach = static_cast<long>(std::ceil(Tail * rest / step));
+  const long   count = 2 * reach + (kernel.factor % 2 == 0 ? 0 : 1);
+  kernel.weights.resize(count);
+  double sum = 0.0;
+  for (long t = 0; t < count; ++t)
+  {
+    kernel.weights[t] = shapes::Gaussian((t - 0.5 * (count - 1)) * step / rest);
+    sum += kernel.weights[t];
+  }
+  for (double & weight : kernel.weights)
+  {
+    weight /= sum;
+  }
+  return kernel;
+}
+
+double
+PhantomSampler::SampleFine(const Neighbourhoods & neighbourhoods, long i, long j, long k) const
+{
+  signed char content = neighbourhoods(i, j, k);
+  if (content == Region::Outside)
+  {
+    return m_SoftTissue;
+  }
+  const Vector3 x = m_Fine.At(i, j, k);
+  if (content == Neighbourhoods::Mixed)
+  {
+    content = Neighbourhoods::Classify(*m_Model, x, Tail * m_AnalyticSigma.maxCoeff());
+  }
+  if (content == Neighbourhoods::Mixed)
+  {
+    return m_Model->BlurredDensity(x, m_Fine.axes, m_AnalyticSigma);
+  }
+  return content == Region::Outside ? m_SoftTissue : m_Model->EvaluateMaterials(x, m_Model->EvaluateLevels(x))[content];
+}
+
+void
+PhantomSampler::SampleFineSlice(const Neighbourhoods & neighbourhoods,
+                                const PhantomBlock &   block,
+                                long                   k,
+                                std::vector<double> &  slice) const
+{
+  const Kernel &      kx = m_Kernels[0];
+  const Kernel &      ky = m_Kernels[1];
+  const auto          columns = static_cast<long>(block.size[0]);
+  const auto          rows = static_cast<long>(block.size[1]);
+  const auto          tapsX = static_cast<long>(kx.weights.size());
+  const auto          tapsY = static_cast<long>(ky.weights.size());
+  const long          fineColumns = (columns - 1) * kx.factor + tapsX;
+  const long          fineRows = (rows - 1) * ky.factor + tapsY;
+  std::vector<double> fine(fineColumns);
+  std::vector<double> row(columns);
+  std::fill(slice.begin(), slice.end(), 0.0);
+  for (long j = 0; j < fineRows; ++j)
+  {
+    for (long i = 0; i < fineColumns; ++i)
+    {
+      fine[i] = this->SampleFine(neighbourhoods, kx.First(block.start[0]) + i, ky.First(block.start[1]) + j, k);
+    }
+    for (long i = 0; i < columns; ++i)
+    {
+      row[i] = std::inner_product(kx.weights.begin(), kx.weights.end(), fine.begin() + i * kx.factor, 0.0);
+    }
+    // Voxel row v takes fine row j with weight j - v * factor.
+    const long first = std::max(0L, FloorDivide(j - tapsY, ky.factor) + 1);
+    for (long v = first; v < rows && v * ky.factor <= j; ++v)
+    {
+      for (long i = 0; i < columns; ++i)
+      {
+        slice[v * columns + i] += ky.weights[j - v * ky.factor] * row[i];
+      }
+    }
+  }
+}
+
+void
+PhantomSampler::SampleDensity(const PhantomBlock & block, float * density) const
+{
+  PhantomBlock box;
+  for (int a = 0; a < 3; ++a)
+  {
+    box.start[a] = m_Kernels[a].First(block.start[a]);
+    box.size[a] = (block.size[a] - 1) * m_Kernels[a].factor + m_Kernels[a].weights.size();
+  }
+  const Neighbourhoods neighbourhoods(*m_Model, m_Fine, Tail * m_AnalyticSigma.maxCoeff(), box);
+
+  const Kernel &      kz = m_Kernels[2];
+  const auto          taps = static_cast<long>(kz.weights.size());
+  const auto          slices = static_cast<long>(block.size[2]);
+  const std::size_t   area = block.size[0] * block.size[1];
+  std::vector<double> slice(area);
+  std::fill(density, density + area * block.size[2], 0.0F);
+  for (long k = 0; k < static_cast<long>(box.size[2]); ++k)
+  {
+    this->SampleFineSlice(neighbourhoods, block, box.start[2] + k, slice);
+    const long first = std::max(0L, FloorDivide(k - taps, kz.factor) + 1);
+    for (long v = first; v < slices && v * kz.factor <= k; ++v)
+    {
+      const double weight = kz.weights[k - v * kz.factor];
+      for (std::size_t i = 0; i < area; ++i)
+      {
+        density[v * area + i] += static_cast<float>(weight * slice[i]);
+      }
+    }
+  }
+}
+
+void
+PhantomSampler::SampleRegions(const PhantomBlock & block, short * regions) const
+{
+  const Neighbourhoods neighbourhoods(*m_Model, m_Grid, 0.0, block);
+  for (std::size_t k = 0; k < block.size[2]; ++k)
+  {
+    for (std::size_t j = 0; j < block.size[1]; ++j)
+    {
+      for (std::size_t i = 0; i < block.size[0]; ++i)
+      {
+        const long        x = block.start[0] + static_cast<long>(i);
+        const long        y = block.start[1] + static_cast<long>(j);
+        const long        z = block.start[2] + static_cast<long>(k);
+        const signed char content = neighbourhoods(x, y, z);
+        *regions++ =
+          static_cast<short>(content == Neighbourhoods::Mixed ? m_Model->Region(m_Grid.At(x, y, z)) : content);
+      }
+    }
+  }
+}
+
+double
+PhantomNoise(std::uint64_t seed, std::uint64_t voxel)
+{
+  // Box-Muller on two hashes of the pair (seed, voxel).
+  const std::uint64_t key = HashBits(HashBits(seed) ^ voxel);
+  const double        u = UnitInterval(key);
+  const double        v = UnitInterval(HashBits(key));
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+} // namespace bone
