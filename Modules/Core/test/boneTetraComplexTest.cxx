@@ -1,0 +1,271 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneTetraComplex.h"
+
+#include "boneMeshValidator.h"
+#include "boneTestBodies.h"
+#include "boneTetraFlips.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+using namespace bone;
+
+namespace
+{
+std::array<int, 4>
+CountDimensions(const SurfaceComplex & complex)
+{
+  std::array<int, 4> count{};
+  for (int d : complex.dimension)
+  {
+    ++count[d];
+  }
+  return count;
+}
+
+MeshArrays
+Compacted(const TetraComplex & complex, const MeshArrays & source)
+{
+  std::vector<IdType> points, cells;
+  return complex.Compact(source, points, cells);
+}
+
+double
+Volume(const MeshArrays & mesh, int region)
+{
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 & v = mesh.tetrahedra[t];
+    sum += mesh.region[t] == region
+             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
+             : 0.0;
+  }
+  return sum;
+}
+
+/** Two tetrahedra on one triangle, the apices on the axis. */
+MeshArrays
+Bipyramid(double lower, double upper)
+{
+  MeshArrays mesh;
+  mesh.points = { { 1, 0, 0 }, { -0.5, 0.9, 0 }, { -0.5, -0.9, 0 }, { 0, 0, -lower }, { 0, 0, upper } };
+  mesh.tetrahedra = { { 0, 1, 2, 4 }, { 0, 2, 1, 3 } };
+  mesh.region = { 1, 1 };
+  test::MakePositive(mesh);
+  return mesh;
+}
+} // namespace
+
+TEST(SurfaceComplex, RodHasFlatEndsWithRimsAndLayers)
+{
+  test::TubeShape shape;
+  const auto      mesh = test::MakeTube(shape);
+  const auto      complex = FindSurfaces(mesh);
+  // Boundary, two interfaces, and each end cut in three.
+  EXPECT_EQ(complex.surfaces.size(), 9u);
+  const auto count = CountDimensions(complex);
+  EXPECT_EQ(count[0], 0);
+  EXPECT_EQ(count[1], 2 * 3 * shape.around) << "the rim and two interface curves at each end";
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    const bool end = mesh.slice[p] == 0 || mesh.slice[p] == shape.slices - 1;
+    EXPECT_EQ(complex.curve[p].size(), complex.dimension[p] == 1 ? 2u : 0u);
+    EXPECT_TRUE(end || complex.dimension[p] >= 2);
+  }
+}
+
+TEST(SurfaceComplex, BallAndRingHaveNoCurves)
+{
+  test::TubeShape ring;
+  ring.closed = true;
+  ring.slices = 40;
+  ring.spacing = 4;
+  for (const auto & mesh : { test::MakeBall(4, { 1, 2 }, 12, 0.1, 2), test::MakeTube(ring) })
+  {
+    const auto count = CountDimensions(FindSurfaces(mesh));
+    EXPECT_EQ(count[0], 0);
+    EXPECT_EQ(count[1], 0);
+    EXPECT_GT(count[2], 0);
+    EXPECT_GT(count[3], 0);
+  }
+}
+
+TEST(SurfaceComplex, NeedsNeighbors)
+{
+  auto mesh = test::MakeBall(1, { 1 }, 10, 0, 1);
+  mesh.neighbors.clear();
+  EXPECT_THROW(FindSurfaces(mesh), std::invalid_argument);
+}
+
+TEST(TetraFlips, TwoThreeFlipIsMadeWhereItHelpsAndNotElsewhere)
+{
+  const auto flipAt = [](TetraComplex & complex) {
+    std::vector<MeshOperation> outcomes;
+    for (int i = 0; i < 4; ++i)
+    {
+      const bool inner = complex.Neighbors(0)[i] >= 0;
+      const auto outcome = RemoveFace(complex, 0, i).outcome;
+      if (inner)
+      {
+        outcomes.push_back(outcome);
+        break;
+      }
+      EXPECT_EQ(outcome, MeshOperation::Surface);
+    }
+    return outcomes;
+  };
+  TetraComplex tall(Bipyramid(6.0, 6.0));
+  EXPECT_THAT(flipAt(tall), testing::ElementsAre(MeshOperation::Quality)) << "three cells would be worse";
+  EXPECT_EQ(tall.AliveCells(), 2);
+
+  const auto   flat = Bipyramid(0.2, 0.2);
+  TetraComplex complex(flat);
+  const double volume = Volume(flat, 1);
+  EXPECT_THAT(flipAt(complex), testing::ElementsAre(MeshOperation::Done));
+  EXPECT_EQ(complex.AliveCells(), 3);
+  const auto made = Compacted(complex, flat);
+  EXPECT_NEAR(Volume(made, 1), volume, 1e-12);
+  EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+}
+
+TEST(TetraFlips, ThreeTwoFlipUndoesAThinFan)
+{
+  // Three cells around a long axis: two on the triangle are better.
+  MeshArrays fan = Bipyramid(6.0, 6.0);
+  fan.tetrahedra = { { 0, 1, 3, 4 }, { 1, 2, 3, 4 }, { 2, 0, 3, 4 } };
+  fan.region = { 1, 1, 1 };
+  test::MakePositive(fan);
+  TetraComplex complex(fan);
+  const double volume = Volume(fan, 1);
+  const auto   result = RemoveEdge(complex, 3, 4);
+  ASSERT_EQ(result.outcome, MeshOperation::Done);
+  EXPECT_EQ(complex.AliveCells(), 2);
+  const auto made = Compacted(complex, fan);
+  EXPECT_NEAR(Volume(made, 1), volume, 1e-12);
+  EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+  EXPECT_EQ(RemoveEdge(complex, 0, 1).outcome, MeshOperation::Surface) << "an edge of the boundary";
+}
+
+TEST(TetraFlips, NoFlipCrossesAnInterface)
+{
+  MeshArrays fan = Bipyramid(6.0, 6.0);
+  fan.tetrahedra = { { 0, 1, 3, 4 }, { 1, 2, 3, 4 }, { 2, 0, 3, 4 } };
+  fan.region = { 1, 1, 2 };
+  test::MakePositive(fan);
+  TetraComplex complex(fan);
+  EXPECT_EQ(RemoveEdge(complex, 3, 4).outcome, MeshOperation::Surface);
+  EXPECT_EQ(complex.AliveCells(), 3);
+}
+
+TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
+{
+  for (unsigned seed = 1; seed <= 6; ++seed)
+  {
+    test::TubeShape shape;
+    shape.seed = seed;
+    shape.closed = seed % 2 == 0;
+    shape.slices = shape.closed ? 30 : 10;
+    shape.spacing = shape.closed ? 5 : 2;
+    const auto        mesh = test::MakeTube(shape);
+    TetraComplex      complex(mesh);
+    std::vector<char> changed(complex.Size(), 0);
+    double            before = -1, after = -1;
+    for (IdType t = 0; t < complex.Size(); ++t)
+    {
+      before = std::max(before, CellCosine(complex, t));
+    }
+    const auto report = ImproveByFlips(complex, { 0.5, 4, seed == 3 }, &changed);
+    EXPECT_GT(report.done, 0u);
+    const auto made = Compacted(complex, mesh);
+    const auto validation = ValidateMesh(made);
+    EXPECT_TRUE(validation.IsValid()) << "seed " << seed << ": " << validation.Summary();
+    EXPECT_EQ(made.neighbors, ComputeFaceNeighbors(made.tetrahedra));
+    for (IdType t = 0; t < complex.Size(); ++t)
+    {
+      after = complex.IsAlive(t) ? std::max(after, CellCosine(complex, t)) : after;
+      if (t < static_cast<IdType>(mesh.tetrahedra.size()) && complex.IsAlive(t) && !changed[t])
+      {
+        EXPECT_EQ(complex.Cell(t), mesh.tetrahedra[t]);
+      }
+    }
+    EXPECT_LE(after, before);
+    EXPECT_TRUE(seed != 3 || made.tetrahedra.size() <= mesh.tetrahedra.size());
+    for (int region = 1; region <= 3; ++region)
+    {
+      EXPECT_NEAR(Volume(made, region), Volume(mesh, region), 1e-9 * Volume(mesh, region));
+    }
+    EXPECT_EQ(BoundaryFaces(made).size(), BoundaryFaces(mesh).size());
+    EXPECT_EQ(BoundaryFaces(made, 2).size(), BoundaryFaces(mesh, 2).size());
+  }
+}
+
+TEST(TetraComplex, CollapseKeepsTopologyWhereTheLinkConditionHolds)
+{
+  // Topology alone: cells may invert here, so that orientation is left out of the comparison.
+  for (unsigned seed = 1; seed <= 4; ++seed)
+  {
+    test::TubeShape shape;
+    shape.seed = seed;
+    shape.closed = seed % 2 == 0;
+    shape.slices = shape.closed ? 12 : 8;
+    shape.around = 9;
+    shape.rings = { 1, 1, 1 };
+    const auto   mesh = test::MakeTube(shape);
+    TetraComplex complex(mesh);
+    std::mt19937 random(seed);
+    int          collapsed = 0;
+    for (int trial = 0; trial < 3000; ++trial)
+    {
+      const auto v = static_cast<IdType>(random() % mesh.points.size());
+      if (complex.Star(v).empty())
+      {
+        continue;
+      }
+      const auto   neighbors = complex.PointNeighbors(v);
+      const IdType w = neighbors[random() % neighbors.size()];
+      if (complex.CanCollapse(v, w) == MeshOperation::Done)
+      {
+        complex.Collapse(v, w);
+        ++collapsed;
+      }
+    }
+    EXPECT_GT(collapsed, 50);
+    const auto made = Compacted(complex, mesh);
+    EXPECT_EQ(made.tetrahedra.size(), static_cast<std::size_t>(complex.AliveCells()));
+    EXPECT_EQ(made.neighbors, ComputeFaceNeighbors(made.tetrahedra));
+    const auto before = ValidateMesh(mesh), after = ValidateMesh(made);
+    EXPECT_EQ(after.components, before.components);
+    EXPECT_EQ(after.boundaryEuler, before.boundaryEuler);
+    for (const auto & check : after.checks)
+    {
+      const bool geometric = check.name == "positive orientation" || check.name == "face manifold";
+      EXPECT_TRUE(geometric || check.failures == 0)
+        << "seed " << seed << ", " << check.name << ": " << (check.examples.empty() ? "" : check.examples.front());
+    }
+  }
+}
+
+TEST(TetraComplex, NoCollapseLeavesAStratum)
+{
+  test::TubeShape    shape;
+  const auto         mesh = test::MakeTube(shape);
+  const TetraComplex complex(mesh);
+  const auto         onEnd = [&](IdType v) { return mesh.slice[v] == 0 || mesh.slice[v] == shape.slices - 1; };
+  for (IdType v = 0; v < static_cast<IdType>(mesh.points.size()); ++v)
+  {
+    for (IdType w : complex.PointNeighbors(v))
+    {
+      if (complex.Dimension(v) < complex.Dimension(w))
+      {
+        EXPECT_EQ(complex.CanCollapse(v, w), MeshOperation::Surface);
+      }
+      else if (complex.Dimension(v) == 2 && complex.Dimension(w) == 2 && mesh.layer[v] != mesh.layer[w] && !onEnd(v))
+      {
+        EXPECT_NE(complex.CanCollapse(v, w), MeshOperation::Done) << "from one layer's surface to another's";
+      }
+    }
+  }
+}
