@@ -3,7 +3,7 @@ set(BONETK_ITK_COMPONENTS
     ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOPNG ITKIOGDCM ITKIONRRD ITKImageGrid ITKImageFunction
     ITKImageIntensity ITKImageFeature ITKSmoothing ITKThresholding ITKDistanceMap ITKConnectedComponents
     ITKBinaryMathematicalMorphology ITKPath ITKTransform)
-set(BONETK_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOPLY FiltersCore)
+set(BONETK_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOPLY IOGeometry FiltersCore)
 
 # GDCM's package configuration names programs that Debian ships apart and says so at length; nothing here runs them.
 set(_bonetk_loglevel "${CMAKE_MESSAGE_LOG_LEVEL}")

@@ -1,0 +1,40 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneIOError_h
+#define boneIOError_h
+
+#include <itkMacro.h>
+
+#include <string>
+
+namespace bone
+{
+/** \class IOError
+ * \brief What readers and writers throw: one line that names the file, what is wrong with it and what to do.
+ *
+ * `what()` is that line alone, unlike that of itk::ExceptionObject, which adds the place in the source. */
+class IOError : public itk::ExceptionObject
+{
+public:
+  /** The line is "path: message"; line breaks within become spaces. */
+  IOError(const std::string & path, const std::string & message);
+
+  const char *
+  what() const noexcept override
+  {
+    return this->GetDescription();
+  }
+  const char *
+  GetNameOfClass() const override
+  {
+    return "IOError";
+  }
+};
+
+/** An exception's description as one line for a person: without ITK's "ITK ERROR: Class(address):" before it. */
+std::string
+ErrorLine(const itk::ExceptionObject & error);
+} // namespace bone
+
+#endif

@@ -1,0 +1,54 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneImageIO_h
+#define boneImageIO_h
+
+#include <itkImage.h>
+#include <itkRGBPixel.h>
+
+#include <string>
+
+namespace bone
+{
+/** \defgroup ImageIO Images in ITK's formats
+ *
+ * Origin, spacing and direction are those of the file, in ITK physical space (LPS, mm). All functions throw IOError:
+ * one line that names the file, what is wrong and what to do. ITK's warnings are off while they run.
+ * \{ */
+using CTImage = itk::Image<float, 3>;
+using LabelImage = itk::Image<short, 3>;
+using PictureImage = itk::Image<itk::RGBPixel<unsigned char>, 2>;
+
+/** Reads a volume from a file, or the one DICOM series in a folder. Refuses what is missing, no image, 2D or 4D, of one
+ * slice, with several components per voxel, with voxels that are NaN or infinite, or with a direction that is not
+ * orthonormal (ITK cannot hold a sheared grid). A DICOM series must have slice positions that are evenly spaced (each
+ * within 5 % of the spacing) and lie along the slices' normal (no gantry tilt). */
+CTImage::Pointer
+ReadCT(const std::string & path);
+
+/** The same for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. */
+LabelImage::Pointer
+ReadLabels(const std::string & path);
+
+/** Reads a radiograph: a 2D image, or a 3D image one pixel thick along its third axis. */
+CTImage::Pointer
+ReadRadiograph(const std::string & path);
+
+/** Write the whole file (with its data file, for formats of two) or none; the format is that of the name's extension
+ * (.nii.gz, .mha, .nrrd, .png, ...). What was written is read back before it takes its name, since not every format's
+ * writer notices a full disk. Label maps are compressed where the format can. */
+void
+WriteImage(const CTImage * image, const std::string & path);
+void
+WriteImage(const LabelImage * image, const std::string & path);
+void
+WriteImage(const itk::Image<float, 2> * image, const std::string & path);
+void
+WriteImage(const itk::Image<unsigned char, 2> * image, const std::string & path);
+void
+WriteImage(const PictureImage * image, const std::string & path);
+/** \} */
+} // namespace bone
+
+#endif

@@ -1,0 +1,56 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshIO_h
+#define boneMeshIO_h
+
+#include "boneDensityMesh.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace bone
+{
+/** \defgroup MeshIO Density meshes in VTK's unstructured-grid format (.vtu)
+ *
+ * Arrays and their types: see the table in the module's README. Files hold points in double and inline base64 data
+ * compressed by zlib. All functions throw IOError: one line that names the file and what is wrong.
+ * \{ */
+
+/** Reads a tetrahedral mesh with or without any of the arrays. Refuses a missing, empty or broken file, cells that are
+ * no linear tetrahedra, ids out of range, coordinates and coefficients that are not finite, and arrays of the wrong
+ * width. */
+MeshArrays
+ReadMeshArrays(const std::string & path);
+
+/** Writes the whole file or none. The name must end in .vtu. */
+void
+WriteMeshArrays(const MeshArrays & mesh, const std::string & path);
+
+DensityMesh<double>::Pointer
+ReadDensityMesh(const std::string & path);
+
+template <typename TCoordinate>
+void
+WriteDensityMesh(const DensityMesh<TCoordinate> * mesh, const std::string & path)
+{
+  WriteMeshArrays(mesh->GetArrays(), path);
+}
+/** \} */
+
+/** A closed surface of triangles. */
+struct TriangleSurface
+{
+  std::vector<Vector3>               points;    ///< mm
+  std::vector<std::array<IdType, 3>> triangles; ///< counter-clockwise seen from outside
+};
+
+/** Reads a .ply, .vtp or .stl surface; polygons are cut into triangles, and a surface whose triangles look inward is
+ * turned. Throws IOError where it is missing, broken, empty, not closed (an edge has not two triangles that run along
+ * it in opposite directions) or has coordinates that are not finite. */
+TriangleSurface
+ReadTriangleSurface(const std::string & path);
+} // namespace bone
+
+#endif

@@ -1,0 +1,47 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneIOError.h"
+
+#include <algorithm>
+
+namespace bone
+{
+namespace
+{
+std::string
+OneLine(std::string text)
+{
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  const auto end = text.find_last_not_of(' ');
+  text.erase(end == std::string::npos ? 0 : end + 1);
+  return text;
+}
+} // namespace
+
+IOError::IOError(const std::string & path, const std::string & message)
+  : itk::ExceptionObject(__FILE__, __LINE__)
+{
+  this->SetDescription(OneLine(path + ": " + message));
+}
+
+std::string
+ErrorLine(const itk::ExceptionObject & error)
+{
+  std::string text = OneLine(error.GetDescription());
+  for (const char * prefix : { "ITK ERROR: ", "itk::ERROR: " })
+  {
+    if (text.rfind(prefix, 0) == 0)
+    {
+      text.erase(0, std::string(prefix).size());
+    }
+  }
+  const auto address = text.find("(0x");
+  const auto colon = text.find("): ");
+  if (address != std::string::npos && colon != std::string::npos && address < colon && address < text.find(' '))
+  {
+    text.erase(0, colon + 3);
+  }
+  return text;
+}
+} // namespace bone

@@ -1,0 +1,179 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshIO.h"
+
+#include "boneAtomicFile.h"
+#include "boneConversions.h"
+#include "boneRefuse.h"
+#include "boneVtkFile.h"
+
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkTriangleFilter.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace bone
+{
+namespace
+{
+vtkSmartPointer<vtkPolyData>
+ReadPolygons(const std::string & path)
+{
+  RequireExtension(path, { ".ply", ".vtp", ".stl" });
+  if (HasExtension(path, ".ply"))
+  {
+    return ReadPlyFile(path);
+  }
+  return HasExtension(path, ".vtp") ? ReadVtpFile(path) : ReadStlFile(path);
+}
+
+TriangleSurface
+ToTriangles(vtkPolyData * polygons)
+{
+  vtkNew<vtkTriangleFilter> triangulate;
+  triangulate->SetInputData(polygons);
+  triangulate->PassVertsOff();
+  triangulate->PassLinesOff();
+  triangulate->Update();
+  vtkPolyData *   data = triangulate->GetOutput();
+  TriangleSurface surface;
+  surface.points.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (vtkIdType p = 0; p < data->GetNumberOfPoints(); ++p)
+  {
+    data->GetPoint(p, surface.points[p].data());
+    if (!surface.points[p].allFinite())
+    {
+      Refuse("point ", p, " has a coordinate that is not finite");
+    }
+  }
+  vtkCellArray * cells = data->GetPolys();
+  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
+  {
+    vtkIdType         size = 0;
+    const vtkIdType * ids = nullptr;
+    cells->GetCellAtId(c, size, ids);
+    surface.triangles.push_back(
+      { static_cast<IdType>(ids[0]), static_cast<IdType>(ids[1]), static_cast<IdType>(ids[2]) });
+  }
+  if (surface.triangles.empty())
+  {
+    Refuse("holds no surface: there are no triangles");
+  }
+  return surface;
+}
+
+void
+RequireIdsInRange(vtkPolyData * polygons)
+{
+  for (vtkCellArray * cells : { polygons->GetPolys(), polygons->GetStrips() })
+  {
+    for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
+    {
+      vtkIdType         size = 0;
+      const vtkIdType * ids = nullptr;
+      cells->GetCellAtId(c, size, ids);
+      for (vtkIdType i = 0; i < size; ++i)
+      {
+        if (ids[i] < 0 || ids[i] >= polygons->GetNumberOfPoints())
+        {
+          Refuse("polygon ", c, " names point ", ids[i], " where there are ", polygons->GetNumberOfPoints(), " points");
+        }
+      }
+    }
+  }
+}
+
+void
+RequireClosed(const TriangleSurface & surface)
+{
+  std::vector<std::pair<IdType, IdType>> edges, reversed;
+  for (const auto & triangle : surface.triangles)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      edges.emplace_back(triangle[i], triangle[(i + 1) % 3]);
+      reversed.emplace_back(triangle[(i + 1) % 3], triangle[i]);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(reversed.begin(), reversed.end());
+  if (const auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end())
+  {
+    Refuse("the surface is no manifold: two triangles run the same way along the edge from point ",
+           twice->first,
+           " to ",
+           twice->second);
+  }
+  std::vector<std::pair<IdType, IdType>> open;
+  std::set_difference(edges.begin(), edges.end(), reversed.begin(), reversed.end(), std::back_inserter(open));
+  if (!open.empty())
+  {
+    Refuse("the surface is not closed: ", open.size(), " edges have one triangle; close its holes");
+  }
+}
+
+// Six times the enclosed volume, positive where the triangles look outward.
+double
+EnclosedVolume(const TriangleSurface & surface)
+{
+  double        volume = 0;
+  const Vector3 origin = surface.points[surface.triangles[0][0]];
+  for (const auto & t : surface.triangles)
+  {
+    volume += (surface.points[t[0]] - origin).dot((surface.points[t[1]] - origin).cross(surface.points[t[2]] - origin));
+  }
+  return volume;
+}
+} // namespace
+
+MeshArrays
+ReadMeshArrays(const std::string & path)
+{
+  RequireReadableFile(path);
+  RequireExtension(path, { ".vtu" });
+  return NamingFile(path, [&] { return ToMeshArrays(ReadVtuFile(path)); });
+}
+
+void
+WriteMeshArrays(const MeshArrays & mesh, const std::string & path)
+{
+  RequireExtension(path, { ".vtu" });
+  NamingFile(path, [&] {
+    AtomicFile file(path);
+    WriteVtuFile(ToVtkUnstructuredGrid(mesh), file);
+    file.Commit();
+  });
+}
+
+DensityMesh<double>::Pointer
+ReadDensityMesh(const std::string & path)
+{
+  auto mesh = DensityMesh<double>::New();
+  mesh->SetArrays(ReadMeshArrays(path));
+  return mesh;
+}
+
+TriangleSurface
+ReadTriangleSurface(const std::string & path)
+{
+  RequireReadableFile(path);
+  return NamingFile(path, [&] {
+    const auto polygons = ReadPolygons(path);
+    RequireIdsInRange(polygons);
+    TriangleSurface surface = ToTriangles(polygons);
+    RequireClosed(surface);
+    if (EnclosedVolume(surface) < 0)
+    {
+      for (auto & triangle : surface.triangles)
+      {
+        std::swap(triangle[1], triangle[2]);
+      }
+    }
+    return surface;
+  });
+}
+} // namespace bone

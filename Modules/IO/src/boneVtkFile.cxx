@@ -1,0 +1,221 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneVtkFile.h"
+
+#include "boneAtomicFile.h"
+#include "boneIOError.h"
+
+#include <vtkCommand.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkNew.h>
+#include <vtkPLYReader.h>
+#include <vtkSTLReader.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+namespace bone
+{
+namespace
+{
+// Keeps VTK's errors and warnings off the standard error stream and remembers the first.
+class MessageCatcher : public vtkCommand
+{
+public:
+  vtkTypeMacro(MessageCatcher, vtkCommand);
+  static MessageCatcher *
+  New()
+  {
+    return new MessageCatcher;
+  }
+  void
+  Execute(vtkObject *, unsigned long, void * data) override
+  {
+    if (data != nullptr && m_First.empty())
+    {
+      m_First = static_cast<const char *>(data);
+    }
+    m_Any = true;
+  }
+  bool
+  Any() const
+  {
+    return m_Any;
+  }
+  // VTK's message without the place in its source: "ERROR: In file, line n\nclass (address): text\n\n".
+  std::string
+  Text() const
+  {
+    const auto        colon = m_First.find("): ");
+    std::string       text = colon == std::string::npos ? m_First : m_First.substr(colon + 3);
+    const std::string blanks = " \n.";
+    text.erase(text.find_last_not_of(blanks) + 1);
+    return text;
+  }
+  void
+  Watch(vtkAlgorithm * algorithm)
+  {
+    for (vtkObject * object :
+         { static_cast<vtkObject *>(algorithm), static_cast<vtkObject *>(algorithm->GetExecutive()) })
+    {
+      object->AddObserver(vtkCommand::ErrorEvent, this);
+      object->AddObserver(vtkCommand::WarningEvent, this);
+    }
+  }
+
+private:
+  std::string m_First;
+  bool        m_Any{ false };
+};
+
+template <typename TReader>
+auto
+ReadWith(TReader * reader, MessageCatcher * messages, const std::string & path, const char * kind)
+{
+  RequireReadableFile(path);
+  messages->Watch(reader);
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  if (messages->Any() || reader->GetErrorCode() != vtkErrorCode::NoError)
+  {
+    const std::string text = messages->Text();
+    throw IOError(path, std::string("is no readable ") + kind + " file" + (text.empty() ? "" : ": " + text));
+  }
+  return reader->GetOutput();
+}
+
+template <typename TReader>
+auto
+ReadXmlWith(const std::string & path, const char * kind)
+{
+  vtkNew<MessageCatcher> messages;
+  vtkNew<TReader>        reader;
+  reader->SetReaderErrorObserver(messages);
+  reader->SetParserErrorObserver(messages);
+  auto * output = ReadWith(reader.Get(), messages.Get(), path, kind);
+  return vtkSmartPointer<std::remove_pointer_t<decltype(output)>>(output);
+}
+
+template <typename TReader>
+vtkSmartPointer<vtkPolyData>
+ReadSurfaceWith(const std::string & path, const char * kind)
+{
+  vtkNew<MessageCatcher> messages;
+  vtkNew<TReader>        reader;
+  return ReadWith(reader.Get(), messages.Get(), path, kind);
+}
+
+template <typename TWriter, typename TData>
+void
+WriteXml(TData * data, const AtomicFile & file)
+{
+  vtkNew<MessageCatcher> messages;
+  vtkNew<TWriter>        writer;
+  messages->Watch(writer);
+  writer->SetFileName(file.GetTemporaryPath().c_str());
+  writer->SetInputData(data);
+  // Inline base64 compressed by zlib is what other readers of the format (meshio) understand.
+  writer->SetDataModeToBinary();
+  writer->SetCompressorTypeToZLib();
+  writer->SetCompressionLevel(1);
+  writer->SetHeaderTypeToUInt64();
+  if (writer->Write() == 0 || messages->Any() || writer->GetErrorCode() != vtkErrorCode::NoError)
+  {
+    const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
+    throw IOError(file.GetPath(), "cannot write: " + (full ? std::string("the disk is full") : messages->Text()));
+  }
+}
+} // namespace
+
+void
+RequireReadableFile(const std::string & path)
+{
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto      status = fs::status(path, error);
+  if (!fs::exists(status))
+  {
+    throw IOError(path, "there is no such file");
+  }
+  if (fs::is_directory(status))
+  {
+    throw IOError(path, "is a folder: name a file");
+  }
+  if (fs::is_regular_file(status) && fs::file_size(path, error) == 0)
+  {
+    throw IOError(path, "is empty");
+  }
+  if (!std::ifstream(path))
+  {
+    throw IOError(path, "cannot be opened for reading");
+  }
+}
+
+bool
+HasExtension(const std::string & path, const std::string & extension)
+{
+  return path.size() > extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), path.rbegin(), [](unsigned char a, unsigned char b) {
+           return std::tolower(a) == std::tolower(b);
+         });
+}
+
+void
+RequireExtension(const std::string & path, const std::vector<std::string> & extensions)
+{
+  std::string known;
+  for (const auto & extension : extensions)
+  {
+    if (HasExtension(path, extension))
+    {
+      return;
+    }
+    known += (known.empty() ? "" : " or ") + extension;
+  }
+  throw IOError(path, "the name must end in " + known);
+}
+
+vtkSmartPointer<vtkUnstructuredGrid>
+ReadVtuFile(const std::string & path)
+{
+  return ReadXmlWith<vtkXMLUnstructuredGridReader>(path, "VTK unstructured grid (.vtu)");
+}
+
+vtkSmartPointer<vtkPolyData>
+ReadVtpFile(const std::string & path)
+{
+  return ReadXmlWith<vtkXMLPolyDataReader>(path, "VTK poly data (.vtp)");
+}
+
+vtkSmartPointer<vtkPolyData>
+ReadPlyFile(const std::string & path)
+{
+  return ReadSurfaceWith<vtkPLYReader>(path, "PLY");
+}
+
+vtkSmartPointer<vtkPolyData>
+ReadStlFile(const std::string & path)
+{
+  return ReadSurfaceWith<vtkSTLReader>(path, "STL");
+}
+
+void
+WriteVtuFile(vtkUnstructuredGrid * grid, const AtomicFile & file)
+{
+  WriteXml<vtkXMLUnstructuredGridWriter>(grid, file);
+}
+
+void
+WriteVtpFile(vtkPolyData * data, const AtomicFile & file)
+{
+  WriteXml<vtkXMLPolyDataWriter>(data, file);
+}
+} // namespace bone

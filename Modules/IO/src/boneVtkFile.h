@@ -1,0 +1,47 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneVtkFile_h
+#define boneVtkFile_h
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <string>
+#include <vector>
+
+namespace bone
+{
+class AtomicFile;
+
+/** Throws IOError unless the path names a regular file that is not empty and can be opened. */
+void
+RequireReadableFile(const std::string & path);
+
+/** Throws IOError unless the path ends (in any case) in one of the extensions, given with their dots. */
+void
+RequireExtension(const std::string & path, const std::vector<std::string> & extensions);
+
+/** True where the path ends in the extension, in any case. */
+bool
+HasExtension(const std::string & path, const std::string & extension);
+
+/** Read a file with VTK's reader; VTK's own messages become one IOError. */
+vtkSmartPointer<vtkUnstructuredGrid>
+ReadVtuFile(const std::string & path);
+vtkSmartPointer<vtkPolyData>
+ReadVtpFile(const std::string & path);
+vtkSmartPointer<vtkPolyData>
+ReadPlyFile(const std::string & path);
+vtkSmartPointer<vtkPolyData>
+ReadStlFile(const std::string & path);
+
+/** Write a .vtu or .vtp file to the temporary path, without committing. */
+void
+WriteVtuFile(vtkUnstructuredGrid * grid, const AtomicFile & file);
+void
+WriteVtpFile(vtkPolyData * data, const AtomicFile & file);
+} // namespace bone
+
+#endif
