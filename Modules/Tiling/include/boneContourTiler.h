@@ -1,0 +1,47 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneContourTiler_h
+#define boneContourTiler_h
+
+#include "boneContourStack.h"
+#include "boneMeshArrays.h"
+#include "boneTilingMetric.h"
+#include "boneTilingReport.h"
+
+#include <functional>
+#include <memory>
+
+namespace bone
+{
+/** What the tiling of a stack of contours is asked to do. */
+struct TilingParameters
+{
+  /** Cost of the knit's steps; span length where none is set. */
+  std::shared_ptr<const TilingMetric> metric;
+  /** Called with the share of the work done, 0..1. May throw to end the tiling. */
+  std::function<void(double)> progress;
+};
+
+/** \brief Tiles a stack of nested contours into a layered, conforming tetrahedral mesh (paper 2.2 to 2.6).
+ *
+ * 1. Each slice is triangulated once: the rings between its nested contours and about the medial axis. Both slabs that
+ *    meet at the slice share these triangles (continuity between slices).
+ * 2. Pieces of neighbouring slices are matched by overlap and distance; several pieces against one are joined by
+ * bridges into a composite contour; a layer that is missing on one side is drawn onto the next contour inward.
+ * 3. Each pair is knitted from the inside out: the wall between the medial axes first, then ring after ring, the wall
+ *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
+ * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.
+ *
+ * A slab that cannot be knitted so is tried with the other diagonals, other starts and other walls between the axes,
+ * then with a plane in between whose contours are interpolated, then filled from one interior vertex; each is counted
+ * in the report. Orientation is decided by exact predicates and the result is validated: the function returns a valid
+ * mesh or throws std::runtime_error naming slice and contour.
+ *
+ * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
+ * \ref MeshArrays. Deterministic. */
+MeshArrays
+TileContours(const ContourStack & stack, const TilingParameters & parameters, TilingReport & report);
+} // namespace bone
+
+#endif

@@ -1,0 +1,271 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneOutlineInterpolation.h"
+
+#include "boneContourStack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace bone
+{
+namespace tiling
+{
+namespace
+{
+using Polygon = std::vector<Vector2>;
+
+constexpr int GridCells = 160; // along the longer side
+
+struct Grid
+{
+  Vector2             origin;
+  double              step;
+  int                 nx, ny;
+  std::vector<double> value;
+
+  double &
+  At(int i, int j)
+  {
+    return value[static_cast<std::size_t>(j) * nx + i];
+  }
+};
+
+/** Signed distance to a set of disjoint polygons, negative inside. */
+double
+SignedDistance(const Vector2 & q, const std::vector<Polygon> & polygons)
+{
+  double best = std::numeric_limits<double>::infinity();
+  bool   inside = false;
+  for (const Polygon & polygon : polygons)
+  {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+    {
+      const Vector2 & a = polygon[i];
+      const Vector2   d = polygon[(i + 1) % polygon.size()] - a;
+      const double    t = std::clamp((q - a).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
+      best = std::min(best, (q - a - t * d).squaredNorm());
+    }
+    inside = inside != PointInPolygon(q, polygon);
+  }
+  return inside ? -std::sqrt(best) : std::sqrt(best);
+}
+
+/** Closed polygons of the zero level, material (negative) on the left. */
+std::vector<Polygon>
+ZeroLevel(Grid & grid)
+{
+  // Each crossed grid edge is a vertex, named by its lower left node and direction (0 along x, 1 along y).
+  using Key = std::array<int, 3>;
+  std::map<Key, Key> next;
+  const auto         inside = [&grid](int i, int j) { return grid.At(i, j) < 0; };
+  for (int j = 0; j + 1 < grid.ny; ++j)
+  {
+    for (int i = 0; i + 1 < grid.nx; ++i)
+    {
+      const std::array<bool, 4> in{ inside(i, j), inside(i + 1, j), inside(i + 1, j + 1), inside(i, j + 1) };
+      const std::array<Key, 4>  edge{ Key{ i, j, 0 }, Key{ i + 1, j, 1 }, Key{ i, j + 1, 0 }, Key{ i, j, 1 } };
+      // Walking the cell's corners counter-clockwise, the level enters where we leave the material and ends at the
+      // edge by which we came in; at a saddle the material's corners stay apart.
+      for (int k = 0; k < 4; ++k)
+      {
+        if (in[k] && !in[(k + 1) % 4])
+        {
+          int back = k;
+          while (in[(back + 3) % 4])
+          {
+            back = (back + 3) % 4;
+          }
+          next[edge[k]] = edge[(back + 3) % 4];
+        }
+      }
+    }
+  }
+  const auto place = [&grid](const Key & key) {
+    const int    i = key[0], j = key[1];
+    const double a = grid.At(i, j), b = key[2] == 0 ? grid.At(i + 1, j) : grid.At(i, j + 1);
+    const double t = a / (a - b);
+    return Vector2(grid.origin + grid.step * Vector2(i + (key[2] == 0 ? t : 0.0), j + (key[2] == 1 ? t : 0.0)));
+  };
+  std::vector<Polygon> polygons;
+  while (!next.empty())
+  {
+    Polygon polygon;
+    Key     key = next.begin()->first;
+    for (auto it = next.find(key); it != next.end(); it = next.find(key))
+    {
+      polygon.push_back(place(key));
+      key = it->second;
+      next.erase(it);
+    }
+    polygons.push_back(std::move(polygon));
+  }
+  return polygons;
+}
+
+Polygon
+ResampleClosed(const Polygon & polygon, double spacing)
+{
+  double length = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+  }
+  const int   count = std::max(6, static_cast<int>(std::lround(length / spacing)));
+  Polygon     result;
+  std::size_t segment = 0;
+  double      before = 0.0, size = (polygon[1] - polygon[0]).norm();
+  for (int s = 0; s < count; ++s)
+  {
+    const double target = length * s / count;
+    while (before + size < target && segment + 1 < polygon.size())
+    {
+      before += size;
+      ++segment;
+      size = (polygon[(segment + 1) % polygon.size()] - polygon[segment]).norm();
+    }
+    const double t = size > 0 ? (target - before) / size : 0.0;
+    result.push_back((1 - t) * polygon[segment] + t * polygon[(segment + 1) % polygon.size()]);
+  }
+  return result;
+}
+
+/** The real loops of sections by region, with their layer and spacing. */
+struct LayerLoops
+{
+  std::vector<Polygon> loops;
+  int                  layer{ 0 };
+  double               length{ 0.0 };
+  std::size_t          points{ 0 };
+};
+
+std::map<int, LayerLoops>
+CollectLoops(const std::vector<Vector2> & plane,
+             const std::vector<int> &     layerOfVertex,
+             const std::vector<Section> & sections)
+{
+  std::map<int, LayerLoops> result;
+  for (const Section & section : sections)
+  {
+    for (std::size_t k = 0; k < section.region.size(); ++k)
+    {
+      LayerLoops & layer = result[section.region[k]];
+      Polygon      polygon;
+      for (int v : section.walks[k])
+      {
+        polygon.push_back(plane[v]);
+      }
+      for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        layer.length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+      }
+      layer.points += polygon.size();
+      layer.layer = layerOfVertex[section.walks[k].front()];
+      layer.loops.push_back(std::move(polygon));
+    }
+    if (section.hole)
+    {
+      Polygon hole;
+      for (int v : section.walks.back())
+      {
+        hole.push_back(plane[v]);
+      }
+      result[section.region.back()].loops.push_back(std::move(hole));
+    }
+  }
+  return result;
+}
+
+std::vector<Polygon>
+MeanLevel(const LayerLoops & lower, const LayerLoops & upper)
+{
+  Vector2 low = lower.loops.front().front(), high = low;
+  for (const auto * side : { &lower, &upper })
+  {
+    for (const Polygon & polygon : side->loops)
+    {
+      for (const Vector2 & q : polygon)
+      {
+        low = low.cwiseMin(q);
+        high = high.cwiseMax(q);
+      }
+    }
+  }
+  Grid grid;
+  grid.step = std::max((high - low).maxCoeff() / GridCells, 1e-3);
+  grid.origin = low - 2 * grid.step * Vector2::Ones();
+  grid.nx = static_cast<int>(std::ceil((high - low).x() / grid.step)) + 5;
+  grid.ny = static_cast<int>(std::ceil((high - low).y() / grid.step)) + 5;
+  grid.value.resize(static_cast<std::size_t>(grid.nx) * grid.ny);
+  for (int j = 0; j < grid.ny; ++j)
+  {
+    for (int i = 0; i < grid.nx; ++i)
+    {
+      const Vector2 q = grid.origin + grid.step * Vector2(i, j);
+      double        value = SignedDistance(q, lower.loops) + SignedDistance(q, upper.loops);
+      grid.At(i, j) = value == 0.0 ? 1e-9 : value;
+    }
+  }
+  return ZeroLevel(grid);
+}
+} // namespace
+
+std::vector<PieceOutline>
+InterpolateOutlines(const std::vector<Vector2> & plane,
+                    const std::vector<int> &     layerOfVertex,
+                    const std::vector<Section> & lower,
+                    const std::vector<Section> & upper)
+{
+  const auto                below = CollectLoops(plane, layerOfVertex, lower);
+  const auto                above = CollectLoops(plane, layerOfVertex, upper);
+  std::vector<PieceOutline> pieces;
+  for (const auto & [region, loopsBelow] : below)
+  {
+    const auto found = above.find(region);
+    if (found == above.end())
+    {
+      continue;
+    }
+    const double spacing =
+      (loopsBelow.length + found->second.length) / static_cast<double>(loopsBelow.points + found->second.points);
+    for (const Polygon & level : MeanLevel(loopsBelow, found->second))
+    {
+      const double area = SignedArea(level);
+      if (std::abs(area) < spacing * spacing)
+      {
+        continue;
+      }
+      PieceOutline::Loop loop{ ResampleClosed(level, spacing), loopsBelow.layer, region, 0 };
+      if (loop.layer == 0 && area > 0)
+      {
+        pieces.emplace_back();
+        pieces.back().loops.push_back(std::move(loop));
+        continue;
+      }
+      for (PieceOutline & piece : pieces)
+      {
+        if (!PointInPolygon(loop.points.front(), piece.loops.back().points))
+        {
+          continue;
+        }
+        if (area < 0 && loop.layer == 0 && piece.hole.empty())
+        {
+          std::reverse(loop.points.begin(), loop.points.end());
+          piece.hole = loop.points;
+        }
+        else if (area > 0 && piece.hole.empty() && piece.loops.back().region < region)
+        {
+          piece.loops.push_back(std::move(loop));
+        }
+        break;
+      }
+    }
+  }
+  return pieces;
+}
+} // namespace tiling
+} // namespace bone

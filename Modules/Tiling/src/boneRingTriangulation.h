@@ -1,0 +1,63 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneRingTriangulation_h
+#define boneRingTriangulation_h
+
+#include "boneTilingTypes.h"
+
+namespace bone
+{
+namespace tiling
+{
+/** Triangulates the ring between an outer closed contour and an inner walk (loop, tree or point) with edges that span
+ * from one to the other, by dynamic programming on span length and circumradius over several start pairs. All
+ * triangles are counter-clockwise (exact). Returns the mean cost of a triangle (mm), infinite where no such
+ * triangulation was found. */
+double
+TriangulateRing(const std::vector<Vector2> & plane, const Walk & outer, const Walk & inner, Merge & ring);
+
+/** The ring between a walk and itself: no triangles. */
+Merge
+DegenerateRing(const Walk & walk);
+
+/** Constrained Delaunay triangulation of a simple counter-clockwise polygon without further points; triples of
+ * positions in `polygon`, counter-clockwise. Empty where the polygon crosses itself. */
+std::vector<std::array<int, 3>>
+TriangulatePolygon(const std::vector<Vector2> & polygon);
+
+/** A tree in the plane. */
+struct PlanarTree
+{
+  std::vector<Vector2>            points;
+  std::vector<std::array<int, 2>> edges;
+};
+
+/** Chordal axis of a simple counter-clockwise polygon: the tree through the midpoints of the inner edges of its
+ * constrained Delaunay triangulation. The ring between polygon and this tree can always be triangulated. */
+PlanarTree
+ChordalAxis(const std::vector<Vector2> & polygon);
+
+/** Removes leaf branches shorter than 1.5 `factor` clearances (distances to the polygon) of where they start, cuts the
+ * others back by `factor` clearances, and resamples what remains to points about `spacing` apart; a single point where
+ * the rest is shorter than `factor` clearances. */
+PlanarTree
+SimplifyAxis(const PlanarTree & axis, const std::vector<Vector2> & polygon, double factor, double spacing);
+
+/** The tree of a walk around it; `plane` gives the places of the walk's vertices. */
+PlanarTree
+TreeOfWalk(const std::vector<Vector2> & plane, const Walk & walk);
+
+/** A tree carried from one slice to the next, where the innermost loop is `polygon`: each point is drawn a part of the
+ * way to the nearest point of `target`, and what comes to lie outside the polygon or close to it is cut off. May be
+ * empty. */
+PlanarTree
+CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<Vector2> & polygon);
+
+/** The closed walk around a tree, counter-clockwise; ids are those of `vertexOf` for the tree's points. */
+Walk
+TreeWalk(const PlanarTree & tree, const std::vector<int> & vertexOf);
+} // namespace tiling
+} // namespace bone
+
+#endif
