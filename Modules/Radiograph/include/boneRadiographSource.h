@@ -1,0 +1,98 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneRadiographSource_h
+#define boneRadiographSource_h
+
+#include "boneAttenuation.h"
+#include "boneLoopRunner.h"
+#include "boneXRayGeometry.h"
+
+#include <itkImageSource.h>
+
+namespace bone
+{
+/** \class RadiographSource
+ * \brief What the filters that make a radiograph share: the geometry as an input, the conversion to attenuation, and an
+ * output image that knows where it is.
+ *
+ * Inputs: "Geometry", an XRayGeometry; editing it in place re-runs the filter.
+ * Output: an image of columns x rows x 1 pixels in physical space: its origin is the centre of pixel (0, 0), its
+ * directions are the detector's U, V and U x V, its spacing the pixels' (1 mm along the third). A value is the line
+ * integral from the source (parallel: from infinity) to the pixel's centre, in the density's unit times mm, or without
+ * unit where HUToAttenuation is not None. The whole image is always made.
+ *
+ * Parameters: HUToAttenuation (default None), WaterAttenuation (per mm, default that at 60 keV).
+ *
+ * \tparam TOutputImage a three-dimensional image of a scalar pixel type. */
+template <typename TOutputImage>
+class RadiographSource : public itk::ImageSource<TOutputImage>
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(RadiographSource);
+  using Self = RadiographSource;
+  using Superclass = itk::ImageSource<TOutputImage>;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkTypeMacro(RadiographSource, itk::ImageSource);
+
+  using OutputImageType = TOutputImage;
+  using OutputPixelType = typename TOutputImage::PixelType;
+  static_assert(TOutputImage::ImageDimension == 3, "A radiograph lies in space: it needs a three-dimensional image.");
+
+  virtual void
+  SetGeometry(const XRayGeometry * geometry)
+  {
+    this->itk::ProcessObject::SetInput("Geometry", const_cast<XRayGeometry *>(geometry));
+  }
+  const XRayGeometry *
+  GetGeometry() const
+  {
+    return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput("Geometry"));
+  }
+
+  itkSetMacro(HUToAttenuation, HUToAttenuation);
+  itkGetConstMacro(HUToAttenuation, HUToAttenuation);
+  itkSetMacro(WaterAttenuation, double);
+  itkGetConstMacro(WaterAttenuation, double);
+
+protected:
+  RadiographSource();
+  ~RadiographSource() override = default;
+
+  void
+  VerifyPreconditions() ITKv5_CONST override;
+  void
+  GenerateOutputInformation() override;
+  void
+  EnlargeOutputRequestedRegion(itk::DataObject * output) override;
+  void
+  GenerateData() override;
+
+  /** Writes rows x columns line integrals, row by row. */
+  virtual void
+  ComputeIntegrals(float * integrals) = 0;
+
+  LinearConversion
+  GetConversion() const
+  {
+    return MakeConversion(m_HUToAttenuation, m_WaterAttenuation);
+  }
+  /** Loops on this filter's threads; the main one reports progress and stops on abort. */
+  LoopRunner
+  MakeLoops();
+
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+
+private:
+  HUToAttenuation m_HUToAttenuation{ HUToAttenuation::None };
+  double          m_WaterAttenuation{ WaterAttenuationAt60keV };
+};
+} // namespace bone
+
+#ifndef ITK_MANUAL_INSTANTIATION
+#include "boneRadiographSource.hxx"
+#endif
+
+#endif

@@ -1,0 +1,105 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneRadiographSource_hxx
+#define boneRadiographSource_hxx
+
+#include "boneRadiographSource.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace bone
+{
+template <typename TOutputImage>
+RadiographSource<TOutputImage>::RadiographSource()
+{
+  this->AddRequiredInputName("Geometry");
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
+{
+  Superclass::VerifyPreconditions();
+  if (!(m_WaterAttenuation > 0) || !std::isfinite(m_WaterAttenuation))
+  {
+    itkExceptionMacro("WaterAttenuation is " << m_WaterAttenuation << " per mm; it must be positive.");
+  }
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::GenerateOutputInformation()
+{
+  const auto &  view = this->GetGeometry()->GetView();
+  const Vector3 axes[3] = { view.detectorU, view.detectorV, view.detectorU.cross(view.detectorV) };
+
+  typename TOutputImage::RegionType    region;
+  typename TOutputImage::PointType     origin;
+  typename TOutputImage::SpacingType   spacing;
+  typename TOutputImage::DirectionType direction;
+  for (unsigned int k = 0; k < 3; ++k)
+  {
+    region.SetSize(k, k < 2 ? view.size[k] : 1);
+    origin[k] = view.detectorOrigin[k];
+    spacing[k] = k < 2 ? view.spacing[k] : 1.0;
+    for (unsigned int row = 0; row < 3; ++row)
+    {
+      direction(row, k) = axes[k][row];
+    }
+  }
+  TOutputImage * output = this->GetOutput();
+  output->SetLargestPossibleRegion(region);
+  output->SetOrigin(origin);
+  output->SetSpacing(spacing);
+  output->SetDirection(direction);
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::EnlargeOutputRequestedRegion(itk::DataObject * output)
+{
+  Superclass::EnlargeOutputRequestedRegion(output);
+  output->SetRequestedRegionToLargestPossibleRegion();
+}
+
+template <typename TOutputImage>
+LoopRunner
+RadiographSource<TOutputImage>::MakeLoops()
+{
+  const auto runner = [this](itk::ProcessObject * reporter) {
+    return [this, reporter](std::size_t count, const std::function<void(std::size_t)> & body) {
+      this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
+      this->GetMultiThreader()->ParallelizeArray(
+        0, count, [&](itk::SizeValueType i) { body(i); }, reporter);
+    };
+  };
+  return { runner(nullptr), runner(this) };
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::GenerateData()
+{
+  this->AllocateOutputs();
+  TOutputImage *     output = this->GetOutput();
+  std::vector<float> integrals(output->GetBufferedRegion().GetNumberOfPixels());
+  this->ComputeIntegrals(integrals.data());
+  std::transform(integrals.begin(), integrals.end(), output->GetBufferPointer(), [](float value) {
+    return static_cast<OutputPixelType>(value);
+  });
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
+{
+  Superclass::PrintSelf(os, indent);
+  os << indent << "HUToAttenuation: " << m_HUToAttenuation << '\n';
+  os << indent << "WaterAttenuation: " << m_WaterAttenuation << '\n';
+}
+} // namespace bone
+
+#endif

@@ -1,0 +1,611 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+// The kernel of ProjectMesh. It is compiled once for each instruction set, into the namespace that
+// BONE_PROJECTION_NAMESPACE names, so it calls no inline function from elsewhere: a linker could share that function
+// with code for lesser processors.
+//
+// In the cell's frame, c = c0 + wc xi, r = r0 + wr eta, s = s0 + h z with |xi|, |eta|, |z| <= 1 at the vertices, and
+// kappa = h / s0 (parallel beam: 0):
+//   position   affine in X = (1 + kappa z) xi, Y = (1 + kappa z) eta and z
+//   depth      v = -z / (1 + kappa z), in which each face plane is an affine function of (xi, eta)
+//   density    sum of q_abk X^a Y^b z^k = sum over b, k, a of eta^b z^k xi^a A[b][k][a]
+// The integral from z_in to z_out is h (z_out - z_in) times the mean of the polynomial in z.
+
+namespace bone
+{
+namespace projection
+{
+namespace BONE_PROJECTION_NAMESPACE
+{
+constexpr int
+CoefficientCount(int degree)
+{
+  return (degree + 1) * (degree + 2) * (degree + 3) / 6;
+}
+
+/** Where exponents (i, j+1, k, l), (i, j, k+1, l) and (one further on) (i, j, k, l+1) of a degree stand, for each
+ * (i, j, k, l) of the degree below: the position depends on j+k+l, k+l and l alone. */
+struct Raise
+{
+  int second[CoefficientCount(7)]{};
+  int third[CoefficientCount(7)]{};
+  constexpr Raise()
+  {
+    int p = 0;
+    for (int jkl = 0; jkl <= 7; ++jkl)
+    {
+      for (int kl = 0; kl <= jkl; ++kl)
+      {
+        for (int l = 0; l <= kl; ++l, ++p)
+        {
+          const int layer = (jkl + 1) * (jkl + 2) * (jkl + 3) / 6;
+          second[p] = layer + kl * (kl + 1) / 2 + l;
+          third[p] = layer + (kl + 1) * (kl + 2) / 2 + l;
+        }
+      }
+    }
+  }
+};
+constexpr Raise raise;
+
+constexpr double factorial[] = { 1, 1, 2, 6, 24, 120, 720, 5040, 40320 };
+
+template <int N>
+struct Monomials
+{
+  double q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
+};
+
+/** From Bernstein coefficients (`in`, of degree D) to monomials: the coefficient of X^a Y^b z^k is a multinomial times
+ * the blossom at the columns of `mu`, each as often as its exponent says. `next` is the first column still to use. */
+template <int N, int D>
+struct Blossom
+{
+  static void
+  Run(const double * in, const double (&mu)[4][4], int next, int (&exponent)[4], Monomials<N> & result)
+  {
+    double out[CoefficientCount(D - 1)];
+    for (int w = next; w < 4; ++w)
+    {
+      for (int p = 0; p < CoefficientCount(D - 1); ++p)
+      {
+        out[p] = mu[w][0] * in[p] + mu[w][1] * in[raise.second[p]] + mu[w][2] * in[raise.third[p]] +
+                 mu[w][3] * in[raise.third[p] + 1];
+      }
+      ++exponent[w];
+      Blossom<N, D - 1>::Run(out, mu, w, exponent, result);
+      --exponent[w];
+    }
+  }
+};
+
+template <int N>
+struct Blossom<N, 0>
+{
+  static void
+  Run(const double * in, const double (&)[4][4], int, int (&exponent)[4], Monomials<N> & result)
+  {
+    const double multinomial = factorial[N] / (factorial[exponent[0]] * factorial[exponent[1]] *
+                                               factorial[exponent[2]] * factorial[exponent[3]]);
+    result.q[exponent[1]][exponent[2]][exponent[3]] = multinomial * in[0];
+  }
+};
+
+/** The density of one cell: A[b][k * (N + 1) + a]. */
+template <typename TReal, int N>
+struct RayPolynomial
+{
+  TReal a[N + 1][(N + 1) * (N + 1)];
+};
+
+/** A column limit: column >= (left) or <= (right) at + perRow * (row - r0). */
+struct Limit
+{
+  double at;
+  double perRow;
+};
+
+/** One cell in its frame, what does not depend on the degree. */
+struct Frame
+{
+  double c0, r0, s0;
+  double halfWidth, halfHeight, halfDepth; ///< wc, wr, h
+  double kappa;
+  int    firstRow, endRow; ///< rows in the band
+  int    firstColumn, endColumn;
+  double mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
+  double depth[4][3]; ///< depths v of the face planes: constant, per column, per row; fronts first
+  int    fronts;      ///< 1..3
+  bool   steep;       ///< a plane is seen too nearly edge-on for single precision
+  Limit  left[6], right[6];
+  int    lefts, rights;
+};
+
+inline double
+Absolute(double x)
+{
+  return x < 0 ? -x : x;
+}
+
+/** Largest integer not above x, within +-limit. */
+inline int
+Floor(double x, int limit)
+{
+  if (!(x > -limit))
+  {
+    return -limit;
+  }
+  if (!(x < limit))
+  {
+    return limit;
+  }
+  const int i = static_cast<int>(x);
+  return i - (static_cast<double>(i) > x ? 1 : 0);
+}
+
+inline void
+Range(const double (&x)[4], double & low, double & high)
+{
+  low = high = x[0];
+  for (int i = 1; i < 4; ++i)
+  {
+    low = x[i] < low ? x[i] : low;
+    high = x[i] > high ? x[i] : high;
+  }
+}
+
+/** Centre, size and pixels of the cell; false where it meets no pixel of the band or is flat. */
+inline bool
+PlaceFrame(const Cell & cell, const Band & band, Frame & frame)
+{
+  double low[3], high[3];
+  Range(cell.column, low[0], high[0]);
+  Range(cell.row, low[1], high[1]);
+  Range(cell.s, low[2], high[2]);
+  constexpr int limit = 1 << 30;
+  const int     firstRow = Floor(low[1], limit) + (Floor(low[1], limit) < low[1] ? 1 : 0);
+  const int     endRow = Floor(high[1], limit) + 1;
+  const int     firstColumn = Floor(low[0], limit) + (Floor(low[0], limit) < low[0] ? 1 : 0);
+  const int     endColumn = Floor(high[0], limit) + 1;
+  frame.firstRow = firstRow < band.firstRow ? band.firstRow : firstRow;
+  frame.endRow = endRow > band.endRow ? band.endRow : endRow;
+  frame.firstColumn = firstColumn < 0 ? 0 : firstColumn;
+  frame.endColumn = endColumn > band.columns ? band.columns : endColumn;
+  frame.c0 = 0.5 * (low[0] + high[0]);
+  frame.r0 = 0.5 * (low[1] + high[1]);
+  frame.s0 = 0.5 * (low[2] + high[2]);
+  frame.halfWidth = 0.5 * (high[0] - low[0]);
+  frame.halfHeight = 0.5 * (high[1] - low[1]);
+  frame.halfDepth = 0.5 * (high[2] - low[2]);
+  frame.kappa = cell.parallel ? 0.0 : frame.halfDepth / frame.s0;
+  return frame.firstRow < frame.endRow && frame.firstColumn < frame.endColumn && frame.halfWidth > 0 &&
+         frame.halfHeight > 0 && frame.halfDepth > 0;
+}
+
+/** Barycentric coordinates in the frame; false for a flat cell. */
+inline bool
+SetBarycentric(const Cell & cell, Frame & frame)
+{
+  double p[4][3];
+  for (int i = 0; i < 4; ++i)
+  {
+    const double magnification = cell.parallel ? 1.0 : cell.s[i] / frame.s0;
+    p[i][0] = magnification * (cell.column[i] - frame.c0) / frame.halfWidth;
+    p[i][1] = magnification * (cell.row[i] - frame.r0) / frame.halfHeight;
+    p[i][2] = (cell.s[i] - frame.s0) / frame.halfDepth;
+  }
+  double e[3][3], normal[3][3];
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      e[i][k] = p[i + 1][k] - p[0][k];
+    }
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    const double(&u)[3] = e[(i + 1) % 3];
+    const double(&v)[3] = e[(i + 2) % 3];
+    normal[i][0] = u[1] * v[2] - u[2] * v[1];
+    normal[i][1] = u[2] * v[0] - u[0] * v[2];
+    normal[i][2] = u[0] * v[1] - u[1] * v[0];
+  }
+  const double volume = e[0][0] * normal[0][0] + e[0][1] * normal[0][1] + e[0][2] * normal[0][2];
+  if (!(Absolute(volume) > 0))
+  {
+    return false;
+  }
+  const double inverse = 1.0 / volume;
+  frame.mu[0][0] = 1;
+  frame.mu[1][0] = frame.mu[2][0] = frame.mu[3][0] = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    double atCentre = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      frame.mu[k + 1][i + 1] = normal[i][k] * inverse;
+      atCentre -= normal[i][k] * inverse * p[0][k];
+      frame.mu[k + 1][0] -= normal[i][k] * inverse;
+    }
+    frame.mu[0][i + 1] = atCentre;
+    frame.mu[0][0] -= atCentre;
+  }
+  return true;
+}
+
+inline void
+AddLimit(Frame & frame, double constant, double perColumn, double perRow, double margin)
+{
+  // constant + perColumn (c - c0) + perRow (r - r0) >= 0
+  constexpr double tiny = 1e-30;
+  const double     slope = Absolute(perColumn) > tiny ? perColumn : tiny;
+  const double     at = frame.c0 - constant / slope;
+  if (slope > 0)
+  {
+    frame.left[frame.lefts++] = { at - margin, -perRow / slope };
+  }
+  else
+  {
+    frame.right[frame.rights++] = { at + margin, -perRow / slope };
+  }
+}
+
+/** Depths of the face planes and column limits; false where there is nothing to be seen. */
+inline bool
+SetPlanes(Frame & frame)
+{
+  // Seen more nearly edge-on than that (in units of the cell's size): not a matter of depth but of left and right.
+  constexpr double edgeOn = 1e-10;
+  constexpr double steep = 1e-3;
+  double           front[4][3], back[4][3];
+  int              fronts = 0, backs = 0;
+  frame.lefts = frame.rights = 0;
+  frame.steep = false;
+  for (int i = 0; i < 4; ++i)
+  {
+    // v * slope + (mu0 + mu1 xi + mu2 eta) >= 0 inside
+    const double slope = frame.kappa * frame.mu[0][i] - frame.mu[3][i];
+    const double inPlane = Absolute(frame.mu[1][i]) + Absolute(frame.mu[2][i]);
+    const double perColumn = frame.mu[1][i] / frame.halfWidth, perRow = frame.mu[2][i] / frame.halfHeight;
+    if (Absolute(slope) <= edgeOn * inPlane)
+    {
+      AddLimit(frame, frame.mu[0][i], perColumn, perRow, 0.0);
+      continue;
+    }
+    frame.steep = frame.steep || Absolute(slope) < steep * inPlane;
+    double(&plane)[3] = slope < 0 ? front[fronts++] : back[backs++];
+    plane[0] = -frame.mu[0][i] / slope;
+    plane[1] = -perColumn / slope;
+    plane[2] = -perRow / slope;
+  }
+  if (fronts == 0 || backs == 0)
+  {
+    return false;
+  }
+  constexpr double margin = 1e-3;
+  for (int f = 0; f < fronts; ++f)
+  {
+    for (int b = 0; b < backs; ++b)
+    {
+      AddLimit(frame, front[f][0] - back[b][0], front[f][1] - back[b][1], front[f][2] - back[b][2], margin);
+    }
+  }
+  frame.fronts = fronts;
+  for (int i = 0; i < 4; ++i)
+  {
+    const double(&plane)[3] = i < fronts ? front[i] : back[i - fronts < backs ? i - fronts : backs - 1];
+    for (int k = 0; k < 3; ++k)
+    {
+      frame.depth[i][k] = plane[k];
+    }
+  }
+  return true;
+}
+
+/** Columns [first, end) that the cell may cover in a row. */
+inline void
+RowColumns(const Frame & frame, double dr, int & first, int & end)
+{
+  double low = frame.firstColumn, high = frame.endColumn - 1;
+  for (int i = 0; i < frame.lefts; ++i)
+  {
+    const double x = frame.left[i].at + frame.left[i].perRow * dr;
+    low = x > low ? x : low;
+  }
+  for (int i = 0; i < frame.rights; ++i)
+  {
+    const double x = frame.right[i].at + frame.right[i].perRow * dr;
+    high = x < high ? x : high;
+  }
+  if (!(low <= high))
+  {
+    first = end = 0;
+    return;
+  }
+  first = static_cast<int>(low);
+  first += first < low ? 1 : 0;
+  end = static_cast<int>(high) + 1;
+}
+
+template <int TPoints>
+struct Gauss;
+template <>
+struct Gauss<1>
+{
+  static constexpr double x[] = { 0.0 }, w[] = { 1.0 };
+};
+template <>
+struct Gauss<2>
+{
+  static constexpr double x[] = { -0.57735026918962576, 0.57735026918962576 }, w[] = { 0.5, 0.5 };
+};
+template <>
+struct Gauss<3>
+{
+  static constexpr double x[] = { -0.77459666924148338, 0.0, 0.77459666924148338 };
+  static constexpr double w[] = { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 };
+};
+template <>
+struct Gauss<4>
+{
+  static constexpr double x[] = { -0.86113631159405258,
+                                  -0.33998104358485626,
+                                  0.33998104358485626,
+                                  0.86113631159405258 };
+  static constexpr double w[] = { 0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693 };
+};
+template <>
+struct Gauss<5>
+{
+  static constexpr double x[] = { -0.90617984593866399,
+                                  -0.53846931010568309,
+                                  0.0,
+                                  0.53846931010568309,
+                                  0.90617984593866399 };
+  static constexpr double w[] = { 0.11846344252809454,
+                                  0.23931433524968324,
+                                  0.28444444444444444,
+                                  0.23931433524968324,
+                                  0.11846344252809454 };
+};
+
+template <typename TReal>
+struct Vector
+{
+  typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
+};
+
+/** out[0..lanes) += value where the mask says so. */
+inline void
+Accumulate(float * out, const Vector<float>::Type & value)
+{
+  Vector<float>::Type sum;
+  __builtin_memcpy(&sum, out, sizeof(sum));
+  sum += value;
+  __builtin_memcpy(out, &sum, sizeof(sum));
+}
+inline void
+Accumulate(float * out, const Vector<double>::Type & value)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    out[i] += static_cast<float>(value[i]);
+  }
+}
+
+/** One row: pixels 0..count, with the planes' depths at pixel 0 and per pixel, and the polynomial at the row. */
+template <typename TReal, int N, int TFronts>
+inline void
+AddRow(const TReal (&start)[4],
+       const TReal (&step)[4],
+       const TReal (&poly)[(N + 1) * (N + 1)],
+       TReal   xiStart,
+       TReal   xiStep,
+       TReal   kappa,
+       int     count,
+       float * out)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  constexpr int points = N / 2 + 1;
+  Lanes         index = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  const Lanes   zero = {};
+  const Lanes   end = zero + static_cast<TReal>(count);
+  for (int i = 0; i < count; i += lanes)
+  {
+    Lanes entry = start[0] + step[0] * index;
+    for (int f = 1; f < TFronts; ++f)
+    {
+      const Lanes depth = start[f] + step[f] * index;
+      entry = depth < entry ? depth : entry;
+    }
+    Lanes exit = start[TFronts] + step[TFronts] * index;
+    for (int b = TFronts + 1; b < 4; ++b)
+    {
+      const Lanes depth = start[b] + step[b] * index;
+      exit = depth > exit ? depth : exit;
+    }
+    const Lanes a = 1 + kappa * entry, b = 1 + kappa * exit;
+    const Lanes inverse = 1 / (a * b);
+    const Lanes length = (entry - exit) * inverse;
+    Lanes       mean = zero + poly[0];
+    if constexpr (N > 0)
+    {
+      const Lanes half = TReal(0.5) * length;
+      const Lanes middle = half - entry * b * inverse;
+      const Lanes xi = xiStart + xiStep * index;
+      Lanes       inZ[N + 1];
+      for (int k = 0; k <= N; ++k)
+      {
+        inZ[k] = zero + poly[k * (N + 1) + N];
+        for (int m = N - 1; m >= 0; --m)
+        {
+          inZ[k] = inZ[k] * xi + poly[k * (N + 1) + m];
+        }
+      }
+      mean = zero;
+      for (int g = 0; g < points; ++g)
+      {
+        const Lanes z = middle + TReal(Gauss<points>::x[g]) * half;
+        Lanes       value = inZ[N];
+        for (int k = N - 1; k >= 0; --k)
+        {
+          value = value * z + inZ[k];
+        }
+        mean += TReal(Gauss<points>::w[g]) * value;
+      }
+    }
+    const Lanes value = length * mean;
+    Accumulate(out + i, ((entry > exit) & (index < end)) ? value : zero);
+    index += static_cast<TReal>(lanes);
+  }
+}
+
+template <typename TReal, int N, int TFronts>
+void
+AddRows(const Frame & frame, const RayPolynomial<double, N> & density, const Band & band)
+{
+  constexpr int           size = (N + 1) * (N + 1);
+  RayPolynomial<TReal, N> local;
+  for (int b = 0; b <= N; ++b)
+  {
+    for (int j = 0; j < size; ++j)
+    {
+      local.a[b][j] = static_cast<TReal>(density.a[b][j]);
+    }
+  }
+  TReal step[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    step[i] = static_cast<TReal>(frame.depth[i][1]);
+  }
+  const double xiPerColumn = 1.0 / frame.halfWidth, etaPerRow = 1.0 / frame.halfHeight;
+  for (int r = frame.firstRow; r < frame.endRow; ++r)
+  {
+    const double dr = r - frame.r0;
+    int          first, end;
+    RowColumns(frame, dr, first, end);
+    if (first >= end)
+    {
+      continue;
+    }
+    const double dc = first - frame.c0;
+    TReal        start[4], poly[size];
+    for (int i = 0; i < 4; ++i)
+    {
+      start[i] = static_cast<TReal>(frame.depth[i][0] + frame.depth[i][1] * dc + frame.depth[i][2] * dr);
+    }
+    const TReal eta = static_cast<TReal>(dr * etaPerRow);
+    for (int j = 0; j < size; ++j)
+    {
+      TReal value = local.a[N][j];
+      for (int b = N - 1; b >= 0; --b)
+      {
+        value = value * eta + local.a[b][j];
+      }
+      poly[j] = value;
+    }
+    AddRow<TReal, N, TFronts>(start,
+                              step,
+                              poly,
+                              static_cast<TReal>(dc * xiPerColumn),
+                              static_cast<TReal>(xiPerColumn),
+                              static_cast<TReal>(frame.kappa),
+                              end - first,
+                              band.data + (r - band.firstRow) * band.stride + first);
+  }
+}
+
+/** The density times h along the rays of the frame. Returns the sum of the coefficients' magnitudes over the largest
+ * magnitude of a control value: how much rounding may grow. */
+template <int N>
+double
+SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<double, N> & density)
+{
+  double control[CoefficientCount(N)];
+  double largest = 0;
+  for (int p = 0; p < CoefficientCount(N); ++p)
+  {
+    control[p] = frame.halfDepth * (cell.scale * cell.coefficients[p] + cell.offset);
+    largest = Absolute(control[p]) > largest ? Absolute(control[p]) : largest;
+  }
+  Monomials<N> monomials;
+  int          exponent[4] = { 0, 0, 0, 0 };
+  Blossom<N, N>::Run(control, frame.mu, 0, exponent, monomials);
+  double sum = 0;
+  for (int b = 0; b <= N; ++b)
+  {
+    for (int a = 0; a <= N; ++a)
+    {
+      double inZ[N + 1] = {};
+      for (int k = 0; k <= N - a - b; ++k)
+      {
+        inZ[k] = monomials.q[a][b][k];
+      }
+      for (int times = 0; times < a + b && a + b <= N; ++times)
+      {
+        for (int k = N; k > 0; --k)
+        {
+          inZ[k] += frame.kappa * inZ[k - 1];
+        }
+      }
+      for (int k = 0; k <= N; ++k)
+      {
+        density.a[b][k * (N + 1) + a] = inZ[k];
+        sum += Absolute(inZ[k]);
+      }
+    }
+  }
+  return largest > 0 ? sum / largest : 0;
+}
+
+template <typename TReal, int N>
+void
+AddInPrecision(const Frame & frame, const RayPolynomial<double, N> & density, const Band & band)
+{
+  switch (frame.fronts)
+  {
+    case 1:
+      AddRows<TReal, N, 1>(frame, density, band);
+      break;
+    case 2:
+      AddRows<TReal, N, 2>(frame, density, band);
+      break;
+    default:
+      AddRows<TReal, N, 3>(frame, density, band);
+  }
+}
+
+template <int N>
+void
+AddOfDegree(const Cell & cell, const Band & band)
+{
+  Frame frame;
+  if (!PlaceFrame(cell, band, frame) || !SetBarycentric(cell, frame) || !SetPlanes(frame))
+  {
+    return;
+  }
+  RayPolynomial<double, N> density;
+  constexpr double         largestGrowth = 64;
+  const double             growth = SetDensity<N>(cell, frame, density);
+  if (frame.steep || !(growth <= largestGrowth))
+  {
+    AddInPrecision<double, N>(frame, density, band);
+  }
+  else
+  {
+    AddInPrecision<float, N>(frame, density, band);
+  }
+}
+
+inline void
+AddCell(const Cell & cell, const Band & band)
+{
+  constexpr AddCellFunction byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
+                                           AddOfDegree<3>, AddOfDegree<4>, AddOfDegree<5>,
+                                           AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
+  byDegree[cell.degree](cell, band);
+}
+} // namespace BONE_PROJECTION_NAMESPACE
+} // namespace projection
+} // namespace bone

@@ -1,0 +1,99 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshRadiograph.h"
+
+#include "boneRadiographTestMeshes.h"
+
+#include <benchmark/benchmark.h>
+
+#include <atomic>
+#include <thread>
+
+namespace
+{
+using namespace bone;
+
+/** Two threads that take the next piece of work. */
+void
+OnTwoThreads(std::size_t count, const std::function<void(std::size_t)> & body)
+{
+  std::atomic<std::size_t> next{ 0 };
+  const auto               work = [&]() {
+    for (std::size_t i = next++; i < count; i = next++)
+    {
+      body(i);
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+}
+
+const LoopRunner loops{ OnTwoThreads, OnTwoThreads };
+
+/** A bone-sized block of about `cells` jittered tetrahedra with a smooth density of the degree. */
+MeshArrays
+Block(int cells, int degree)
+{
+  const double side = std::cbrt(cells / 6.0 / 1.5);
+  const int    nx = static_cast<int>(side), nz = static_cast<int>(1.5 * side);
+  MeshArrays   mesh =
+    test::GridMesh({ { nx, nx, nz } }, Vector3(-50, -50, -75), Vector3(100.0 / nx, 100.0 / nx, 150.0 / nz), 0.25);
+  test::SetPowers(mesh, [degree](std::size_t) { return degree; }, { { 0.7, Vector3(0.002, 0.003, 0.001) } });
+  return mesh;
+}
+
+XRayGeometry::View
+FramedView()
+{
+  return XRayGeometry::Framing(
+    Vector3(-50, -50, -75), Vector3(50, 50, 75), Vector3(0.3, 1, 0.1).normalized(), Vector3::UnitZ(), 800, 1100, 512);
+}
+
+void
+Projection(benchmark::State & state)
+{
+  const auto         mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const auto         view = FramedView();
+  std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+  for (auto _ : state)
+  {
+    ProjectMesh(mesh.points, mesh, view, {}, loops, image.data());
+  }
+  std::vector<std::int32_t> passed(image.size());
+  WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());
+  double intervals = 0;
+  for (int count : passed)
+  {
+    intervals += count;
+  }
+  state.counters["cells"] = static_cast<double>(mesh.tetrahedra.size());
+  state.counters["intervals"] = intervals;
+  state.counters["ns_per_interval"] =
+    benchmark::Counter(intervals * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void
+Walk(benchmark::State & state)
+{
+  const auto         mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const auto         view = FramedView();
+  std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+  for (auto _ : state)
+  {
+    WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), nullptr);
+  }
+}
+} // namespace
+
+BENCHMARK(Projection)
+  ->Args({ 33000, 0 })
+  ->Args({ 33000, 2 })
+  ->Args({ 33000, 3 })
+  ->Args({ 33000, 8 })
+  ->Args({ 6000, 3 })
+  ->Args({ 300000, 3 })
+  ->Unit(benchmark::kMillisecond)
+  ->UseRealTime();
+BENCHMARK(Walk)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->UseRealTime();

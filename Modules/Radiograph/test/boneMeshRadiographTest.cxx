@@ -1,0 +1,405 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshRadiograph.h"
+
+#include "boneRadiographTestMeshes.h"
+#include "boneRayFrame.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+using namespace bone;
+using View = XRayGeometry::View;
+
+/** In order, or against it: the kernels must not mind. */
+LoopRunner
+Sequential(bool backwards = false)
+{
+  const auto loop = [backwards](std::size_t count, const std::function<void(std::size_t)> & body) {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      body(backwards ? count - 1 - i : i);
+    }
+  };
+  return { loop, loop };
+}
+
+std::vector<float>
+Project(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+{
+  std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1], -1.0f);
+  ProjectMesh(mesh.points, mesh, view, options, Sequential(), image.data());
+  return image;
+}
+
+std::vector<float>
+Walk(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+{
+  std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1], -1.0f);
+  WalkMesh(mesh.points, mesh, view, options, Sequential(), image.data(), nullptr);
+  return image;
+}
+
+double
+Largest(const std::vector<float> & image)
+{
+  double largest = 0;
+  for (float value : image)
+  {
+    largest = std::max(largest, std::abs(static_cast<double>(value)));
+  }
+  return largest;
+}
+
+/** Largest difference over the largest value; NaN counts as infinite. */
+double
+Difference(const std::vector<float> & image, const std::vector<float> & reference)
+{
+  double difference = 0;
+  for (std::size_t i = 0; i < image.size(); ++i)
+  {
+    const double d = std::abs(static_cast<double>(image[i]) - reference[i]);
+    difference = d <= difference ? difference : (std::isnan(d) ? std::numeric_limits<double>::infinity() : d);
+  }
+  return difference / Largest(reference);
+}
+
+/** Integrals of a function of (start, end) of the ray's part within the box. */
+template <typename TIntegral>
+std::vector<float>
+BoxImage(const View & view, const Vector3 & lower, const Vector3 & upper, const TIntegral & integral)
+{
+  std::vector<float> image;
+  const auto         geometry = XRayGeometry::New();
+  geometry->SetView(view);
+  for (int r = 0; r < view.size[1]; ++r)
+  {
+    for (int c = 0; c < view.size[0]; ++c)
+    {
+      const Vector3 pixel = geometry->GetPixelPoint(c, r);
+      const Vector3 source = view.parallel ? Vector3(pixel - 5000 * view.direction) : view.source;
+      const auto    part = test::ClipToBox(source, pixel, lower, upper);
+      const Vector3 ray = pixel - source;
+      image.push_back(part[0] < part[1]
+                        ? static_cast<float>(integral(Vector3(source + part[0] * ray), Vector3(source + part[1] * ray)))
+                        : 0.0f);
+    }
+  }
+  return image;
+}
+
+double
+Chord(const Vector3 & a, const Vector3 & b)
+{
+  return (b - a).norm();
+}
+
+const Vector3 lower(-20, -15, -10), upper(22, 18, 14);
+
+View
+Oblique(bool parallel, int pixels = 96)
+{
+  auto view =
+    XRayGeometry::Framing(lower, upper, Vector3(0.4, 1, 0.2).normalized(), Vector3(0.1, 0.2, 1), 400, 600, pixels);
+  view.parallel = parallel;
+  return view;
+}
+
+MeshArrays
+Box(const std::array<int, 3> & n, double jitter)
+{
+  return test::GridMesh(n, lower, (upper - lower).cwiseQuotient(Vector3(n[0], n[1], n[2])), jitter);
+}
+
+MeshArrays
+Staircase()
+{
+  return test::GridMesh(
+    { { 4, 4, 3 } }, lower, Vector3(10, 8, 8), 0.2, [](int i, int j, int) { return i + j < 5 && (i != 1 || j != 1); });
+}
+} // namespace
+
+TEST(MeshRadiograph, ABoxOfConstantDensityGivesItsChords)
+{
+  for (bool parallel : { false, true })
+  {
+    auto mesh = Box({ { 4, 3, 3 } }, 0.3);
+    test::SetConstant(mesh, 2.5);
+    const View view = Oblique(parallel);
+    const auto expected =
+      BoxImage(view, lower, upper, [](const Vector3 & a, const Vector3 & b) { return 2.5 * Chord(a, b); });
+    EXPECT_LT(Difference(Project(mesh, view), expected), 2e-6) << parallel;
+    EXPECT_LT(Difference(Walk(mesh, view), expected), 1e-6) << parallel;
+  }
+}
+
+TEST(MeshRadiograph, ABallGivesTheChordsOfItsFacetsCloseToThoseOfTheSphere)
+{
+  const Vector3 centre(1, 2, 3);
+  auto          mesh = test::BallMesh(16, centre, 12);
+  test::SetConstant(mesh, 1);
+  View       view = XRayGeometry::Framing(Vector3(centre - Vector3::Constant(13)),
+                                    Vector3(centre + Vector3::Constant(13)),
+                                    Vector3::UnitX(),
+                                    Vector3::UnitZ(),
+                                    500,
+                                    800,
+                                    64);
+  const auto image = Project(mesh, view);
+  const auto geometry = XRayGeometry::New();
+  geometry->SetView(view);
+  for (int r = 0; r < view.size[1]; ++r)
+  {
+    for (int c = 0; c < view.size[0]; ++c)
+    {
+      const Vector3 ray = (geometry->GetPixelPoint(c, r) - view.source).normalized();
+      const double  distance = ray.cross(Vector3(centre - view.source)).norm();
+      const double  chord = distance < 12 ? 2 * std::sqrt(144 - distance * distance) : 0;
+      const double  value = image[r * view.size[0] + c];
+      EXPECT_LE(value, chord + 1e-4) << "the mesh lies in the ball";
+      if (distance < 10)
+      {
+        EXPECT_GT(value, 0.97 * chord);
+      }
+    }
+  }
+}
+
+TEST(MeshRadiograph, PolynomialsOfAnyDegreeMatchTheirClosedForm)
+{
+  const std::vector<test::Affine> functions = { { 0.8, Vector3(0.02, -0.01, 0.015) },
+                                                { -0.3, Vector3(0.01, 0.02, -0.03) } };
+  for (bool parallel : { false, true })
+  {
+    const View view = Oblique(parallel, 64);
+    for (int degree = 0; degree <= MaximumBernsteinDegree; ++degree)
+    {
+      auto mesh = Box({ { 3, 3, 3 } }, 0.3);
+      test::SetPowers(
+        mesh, [degree](std::size_t) { return degree; }, functions);
+      const auto expected = BoxImage(view, lower, upper, [&](const Vector3 & a, const Vector3 & b) {
+        return test::IntegratePower(functions[0], degree, a, b) + test::IntegratePower(functions[1], degree, a, b);
+      });
+      EXPECT_LT(Difference(Project(mesh, view), expected), 5e-6) << parallel << ' ' << degree;
+      EXPECT_LT(Difference(Walk(mesh, view), expected), 1e-6) << parallel << ' ' << degree;
+    }
+  }
+}
+
+TEST(MeshRadiograph, WalkAndProjectionAgreeOnANonConvexMeshOfMixedDegrees)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, MaximumBernsteinDegree, 3);
+  for (bool parallel : { false, true })
+  {
+    const View view = Oblique(parallel, 120);
+    EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-5) << parallel;
+  }
+}
+
+TEST(MeshRadiograph, ARayThatLeavesABoneEntersItAgain)
+{
+  auto mesh = test::GridMesh({ { 5, 1, 1 } }, lower, Vector3(8, 30, 20), 0, [](int i, int, int) { return i % 2 == 0; });
+  test::SetConstant(mesh, 1);
+  View view;
+  view.source = Vector3(-300, 1, 2);
+  view.detectorOrigin = Vector3(300, -1.7, 3.3);
+  view.detectorU = Vector3(0, 1, 0);
+  view.size = { { 5, 5 } };
+  for (float value : Project(mesh, view))
+  {
+    EXPECT_NEAR(value, 24, 2e-3);
+  }
+  EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-6);
+}
+
+TEST(MeshRadiograph, RaysThroughFacesEdgesAndVerticesCountOnce)
+{
+  // Rays run exactly within the planes of faces, along edges and through vertices.
+  auto       mesh = test::GridMesh({ { 4, 4, 4 } }, Vector3::Zero(), Vector3::Constant(8));
+  const auto box = Vector3::Constant(32);
+  test::SetConstant(mesh, 1);
+  for (bool parallel : { false, true })
+  {
+    for (double along : { 0.0, 1.0 })
+    {
+      View view;
+      view.parallel = parallel;
+      view.detectorOrigin = Vector3(1, 100, 31);
+      view.size = { { 31, 31 } };
+      view.source = Vector3(16, -100, 16);
+      view.direction = Vector3(0, 1, along).normalized();
+      view.source.z() += along * 4;
+      view.detectorOrigin.z() += along * 92;
+      if (!parallel)
+      {
+        view.detectorOrigin = Vector3(-24, 100, 56);
+        view.spacing = { 4, 4 };
+        view.size = { { 21, 21 } };
+      }
+      const auto expected = BoxImage(view, Vector3::Zero(), box, Chord);
+      const auto projected = Project(mesh, view), walked = Walk(mesh, view);
+      // A ray within the box's own surface may count or not.
+      const auto inner = BoxImage(view, Vector3::Constant(1e-6), Vector3::Constant(32 - 1e-6), Chord);
+      for (std::size_t i = 0; i < expected.size(); ++i)
+      {
+        if (std::abs(expected[i] - inner[i]) < 1e-3)
+        {
+          EXPECT_NEAR(projected[i], expected[i], 1e-5 * 64) << parallel << along << ' ' << i;
+          EXPECT_NEAR(walked[i], expected[i], 1e-5 * 64) << parallel << along << ' ' << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(MeshRadiograph, TheSourceMayLieInsideTheMesh)
+{
+  auto mesh = Box({ { 4, 4, 4 } }, 0.3);
+  test::SetConstant(mesh, 1);
+  View view = Oblique(false);
+  for (const Vector3 & source :
+       { Vector3(1.3, 2.1, 0.7), mesh.points[62], Vector3(0.5 * (mesh.points[62] + mesh.points[63])) })
+  {
+    view.source = source;
+    const auto expected = BoxImage(view, lower, upper, Chord);
+    EXPECT_LT(Difference(Project(mesh, view), expected), 2e-6) << source.transpose();
+    EXPECT_LT(Difference(Walk(mesh, view), expected), 2e-6) << source.transpose();
+  }
+  test::SetRandom(mesh, 5, 11);
+  view.source = Vector3(1.3, 2.1, 0.7);
+  EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-5);
+}
+
+TEST(MeshRadiograph, WhatLiesBehindTheSourceOrTheDetectorDoesNotCount)
+{
+  auto mesh = Box({ { 4, 4, 4 } }, 0.3);
+  test::SetConstant(mesh, 1);
+  for (bool parallel : { false, true })
+  {
+    View view;
+    view.parallel = parallel;
+    view.source = Vector3(0, -200, 0);
+    view.detectorOrigin = Vector3(-30.7, 3.3, 30.6);
+    view.size = { { 63, 63 } };
+    const auto through = BoxImage(view, lower, upper, Chord);
+    EXPECT_LT(Difference(Project(mesh, view), through), 2e-6) << parallel;
+    EXPECT_LT(Difference(Walk(mesh, view), through), 2e-6) << parallel;
+    view.detectorOrigin.y() = -40;
+    EXPECT_EQ(Largest(Project(mesh, view)), 0) << parallel;
+    EXPECT_EQ(Largest(Walk(mesh, view)), 0) << parallel;
+    view.detectorOrigin.y() = 200;
+    view.source = Vector3(0, 60, 0);
+    if (!parallel)
+    {
+      EXPECT_EQ(Largest(Project(mesh, view)), 0);
+      EXPECT_EQ(Largest(Walk(mesh, view)), 0);
+    }
+  }
+}
+
+TEST(MeshRadiograph, IsLinearInTheDensity)
+{
+  auto f = Staircase(), g = f, sum = f;
+  test::SetRandom(f, 6, 1);
+  test::SetRandom(g, 6, 2);
+  test::SetRandom(sum, 6, 2);
+  for (std::size_t i = 0; i < f.coefficients.size(); ++i)
+  {
+    sum.coefficients[i] = 2 * f.coefficients[i] - 0.5 * g.coefficients[i];
+  }
+  const View view = Oblique(false);
+  const auto a = Project(f, view), b = Project(g, view), expected = Project(sum, view);
+  auto       combined = a;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    combined[i] = 2 * a[i] - 0.5f * b[i];
+  }
+  EXPECT_LT(Difference(combined, expected), 1e-5);
+
+  MeshRadiographOptions options;
+  options.scale = 3;
+  options.offset = 0.25;
+  auto ones = f, scaled = f;
+  test::SetConstant(ones, 0.25);
+  const auto chords = Project(ones, view), affine = Project(f, view, options);
+  combined = a;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    combined[i] = 3 * a[i] + chords[i];
+  }
+  EXPECT_LT(Difference(affine, combined), 1e-5);
+  EXPECT_LT(Difference(Walk(f, view, options), combined), 1e-5);
+}
+
+TEST(MeshRadiograph, RegionsAddUpToTheWhole)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, 4, 5);
+  const View view = Oblique(false);
+  for (const auto & method : { Project, Walk })
+  {
+    std::vector<float> sum(static_cast<std::size_t>(view.size[0]) * view.size[1], 0.0f);
+    for (int region = 1; region <= 3; ++region)
+    {
+      MeshRadiographOptions options;
+      options.minimumRegion = options.maximumRegion = region;
+      const auto part = method(mesh, view, options);
+      EXPECT_GT(Largest(part), 0);
+      std::transform(part.begin(), part.end(), sum.begin(), sum.begin(), std::plus<float>());
+    }
+    EXPECT_LT(Difference(sum, method(mesh, view, {})), 1e-5);
+  }
+}
+
+TEST(MeshRadiograph, DoesNotDependOnTheOrderOfWork)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, 4, 5);
+  const View         view = Oblique(false, 150);
+  auto               projected = Project(mesh, view), walked = Walk(mesh, view);
+  std::vector<float> image(projected.size());
+  ProjectMesh(mesh.points, mesh, view, {}, Sequential(true), image.data());
+  EXPECT_EQ(image, projected);
+  WalkMesh(mesh.points, mesh, view, {}, Sequential(true), image.data(), nullptr);
+  EXPECT_EQ(image, walked);
+}
+
+TEST(MeshRadiograph, SliversSeenEdgeOnKeepTheirAccuracy)
+{
+  // Flattened along the beam's normal: faces are seen nearly edge-on, cells are a thousand times longer than thick.
+  std::mt19937 random(5);
+  auto         mesh = Box({ { 4, 4, 4 } }, 0.3);
+  for (Vector3 & p : mesh.points)
+  {
+    p.x() = 1e-3 * p.x() + 0.07 * p.y();
+  }
+  test::SetRandom(mesh, 3, 5);
+  View view;
+  view.source = Vector3(0, -300, 0);
+  view.detectorOrigin = Vector3(-8, 300, 30);
+  view.spacing = { 0.2, 2 };
+  view.size = { { 80, 40 } };
+  EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-5);
+}
+
+TEST(MeshRadiograph, CountsTheCellsPassed)
+{
+  auto mesh = test::GridMesh({ { 6, 1, 1 } }, Vector3::Zero(), Vector3(2, 40, 40));
+  test::SetConstant(mesh, 1);
+  View view;
+  view.parallel = true;
+  view.direction = Vector3(1, 0, 0);
+  view.detectorOrigin = Vector3(50, 1, 39);
+  view.detectorU = Vector3(0, 1, 0);
+  view.size = { { 60, 30 } };
+  std::vector<float>        image(1800);
+  std::vector<std::int32_t> passed(1800);
+  WalkMesh(mesh.points, mesh, view, {}, Sequential(), image.data(), passed.data());
+  for (int i = 0; i < 1800; ++i)
+  {
+    EXPECT_EQ(passed[i], i % 60 < 39 ? 18 : 0) << "three tetrahedra of a Kuhn cube lie on each of its straight rays";
+  }
+}
