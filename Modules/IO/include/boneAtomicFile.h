@@ -44,6 +44,10 @@ public:
     return m_TemporaryPath;
   }
 
+  /** Writes the whole content to the temporary path. Throws IOError where the disk is full. */
+  void
+  Write(const std::string & content);
+
   /** Puts the written file in its place. Throws IOError, and leaves the former file as it was, where nothing or an
    * empty file was written or the disk is full. */
   void

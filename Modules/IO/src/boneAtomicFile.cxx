@@ -194,16 +194,23 @@ AtomicFile::Commit()
 }
 
 void
-WriteFileAtomically(const std::string & path, const std::string & content)
+AtomicFile::Write(const std::string & content)
 {
-  AtomicFile    file(path);
-  std::ofstream stream(file.GetTemporaryPath(), std::ios::binary);
+  errno = 0;
+  std::ofstream stream(m_TemporaryPath, std::ios::binary);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
   if (!stream)
   {
-    throw IOError(path, "cannot write: " + ErrorText(errno));
+    throw IOError(m_Path, "cannot write: " + ErrorText(errno));
   }
+}
+
+void
+WriteFileAtomically(const std::string & path, const std::string & content)
+{
+  AtomicFile file(path);
+  file.Write(content);
   file.Commit();
 }
 

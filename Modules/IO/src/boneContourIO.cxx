@@ -91,7 +91,9 @@ ReadPolylines(vtkPolyData * data)
       Contour &         contour = polyline.contour;
       contour.points = CellPoints(data, cells, c);
       contour.axis = !axis.empty() && axis[cell] != 0;
-      if (!contour.axis && contour.points.size() > 1 && contour.points.front() == contour.points.back())
+      // A closed line may end in its first point; an axis of one point is written as a line from that point to itself.
+      const bool repeats = contour.points.size() > 1 && contour.points.front() == contour.points.back();
+      if (repeats && (!contour.axis || contour.points.size() == 2))
       {
         contour.points.pop_back();
       }
@@ -232,6 +234,10 @@ ToPolyData(const ContourStack * stack)
     {
       rows.push_back({ &contour, static_cast<int>(k) });
       points.insert(points.end(), contour.points.begin(), contour.points.end());
+      if (contour.points.size() == 1)
+      {
+        points.push_back(contour.points.front()); // VTK knows no line of one point
+      }
       offsets.push_back(static_cast<int>(points.size()));
     }
   }

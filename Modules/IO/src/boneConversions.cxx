@@ -39,6 +39,32 @@ RequireFullLength(std::size_t size, std::size_t expected, const char * name)
 }
 
 void
+RequireConsistentDensity(const MeshArrays & mesh)
+{
+  if (mesh.maximumDegree > MaximumBernsteinDegree)
+  {
+    Refuse("the density has degree ", mesh.maximumDegree, "; ", MaximumBernsteinDegree, " is the highest");
+  }
+  const std::size_t nt = mesh.tetrahedra.size();
+  const std::size_t width = static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree));
+  if (mesh.degree.size() != nt || mesh.coefficients.size() != nt * width)
+  {
+    Refuse("a density of degree ", mesh.maximumDegree, " needs ", nt, " degrees and ", nt * width, " coefficients");
+  }
+  for (int degree : mesh.degree)
+  {
+    if (degree < 0 || degree > mesh.maximumDegree)
+    {
+      Refuse("a tetrahedron has degree ", degree, " where 0 to ", mesh.maximumDegree, " are possible");
+    }
+  }
+  if (!std::all_of(mesh.coefficients.begin(), mesh.coefficients.end(), [](double c) { return std::isfinite(c); }))
+  {
+    Refuse("a coefficient is not finite");
+  }
+}
+
+void
 RequireConsistent(const MeshArrays & mesh)
 {
   const std::size_t np = mesh.points.size(), nt = mesh.tetrahedra.size();
@@ -56,25 +82,16 @@ RequireConsistent(const MeshArrays & mesh)
       }
     }
   }
-  if (!mesh.HasDensity())
+  for (std::size_t p = 0; p < np; ++p)
   {
-    return;
-  }
-  if (mesh.maximumDegree > MaximumBernsteinDegree)
-  {
-    Refuse("the density has degree ", mesh.maximumDegree, "; ", MaximumBernsteinDegree, " is the highest");
-  }
-  const std::size_t width = static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree));
-  if (mesh.degree.size() != nt || mesh.coefficients.size() != nt * width)
-  {
-    Refuse("a density of degree ", mesh.maximumDegree, " needs ", nt, " degrees and ", nt * width, " coefficients");
-  }
-  for (int degree : mesh.degree)
-  {
-    if (degree < 0 || degree > mesh.maximumDegree)
+    if (!mesh.points[p].allFinite())
     {
-      Refuse("a tetrahedron has degree ", degree, " where 0 to ", mesh.maximumDegree, " are possible");
+      Refuse("point ", p, " has a coordinate that is not finite");
     }
+  }
+  if (mesh.HasDensity())
+  {
+    RequireConsistentDensity(mesh);
   }
 }
 

@@ -11,7 +11,6 @@
 #include "boneVtkFile.h"
 
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -104,13 +103,7 @@ WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix)
   }
   files.push_back(std::make_unique<AtomicFile>(jsonPath));
   paths.push_back(jsonPath);
-  std::ofstream stream(files.back()->GetTemporaryPath(), std::ios::binary);
-  stream << document.dump(1) << '\n';
-  stream.close();
-  if (!stream)
-  {
-    throw IOError(jsonPath, "cannot write (is the disk full?)");
-  }
+  files.back()->Write(document.dump(1) + '\n');
   for (const auto & file : files)
   {
     file->Commit();

@@ -29,6 +29,18 @@ AreaVector(const std::vector<Vector3> & points)
   return area;
 }
 
+// A normal of the points' plane without regard to their order: a contour that crosses itself may enclose no area.
+Vector3
+SpannedNormal(const std::vector<Vector3> & points)
+{
+  const auto longest = [&](auto && length) {
+    return *std::max_element(
+      points.begin(), points.end(), [&](const Vector3 & a, const Vector3 & b) { return length(a) < length(b); });
+  };
+  const Vector3 along = longest([&](const Vector3 & p) { return (p - points[0]).norm(); }) - points[0];
+  return along.cross(longest([&](const Vector3 & p) { return along.cross(p - points[0]).norm(); }) - points[0]);
+}
+
 int
 LargestComponent(const Vector3 & v)
 {
@@ -40,24 +52,20 @@ LargestComponent(const Vector3 & v)
 Vector3
 CommonNormal(const std::vector<Polyline> & polylines)
 {
-  std::vector<Vector3> areas;
+  Vector3 sum = Vector3::Zero();
   for (const auto & polyline : polylines)
   {
-    if (!polyline.contour.axis)
+    const auto & points = polyline.contour.points;
+    Vector3      area = polyline.contour.axis ? Vector3(Vector3::Zero()) : AreaVector(points);
+    if (const Vector3 spanned = SpannedNormal(points); area.norm() < 1e-6 * spanned.norm())
     {
-      areas.push_back(AreaVector(polyline.contour.points));
+      area = spanned;
     }
-  }
-  const auto largest = std::max_element(
-    areas.begin(), areas.end(), [](const Vector3 & a, const Vector3 & b) { return a.norm() < b.norm(); });
-  Vector3 sum = Vector3::Zero();
-  for (const Vector3 & area : areas)
-  {
-    sum += area.dot(*largest) < 0 ? Vector3(-area) : area;
+    sum += area.dot(sum) < 0 ? Vector3(-area) : area;
   }
   if (!(sum.norm() > 0) || !sum.allFinite())
   {
-    Refuse("has no slice planes (SliceOrigin, SliceNormal), and its contours enclose no area to find them by");
+    Refuse("has no slice planes (SliceOrigin, SliceNormal), and its contours span no plane to find them by");
   }
   return sum[LargestComponent(sum)] < 0 ? Vector3(-sum.normalized()) : Vector3(sum.normalized());
 }

@@ -12,6 +12,7 @@
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -76,6 +77,34 @@ private:
   bool        m_Any{ false };
 };
 
+// VTK's error path for a cell array that is too short reads the piece's PointData element, which need not be there (VTK
+// 9.1 then crashes): this reader adds an empty one.
+template <typename TReader>
+class PieceReader : public TReader
+{
+public:
+  static PieceReader *
+  New()
+  {
+    auto * reader = new PieceReader;
+    reader->InitializeObjectBase();
+    return reader;
+  }
+
+protected:
+  int
+  ReadPiece(vtkXMLDataElement * piece) override
+  {
+    if (piece->FindNestedElementWithName("PointData") == nullptr)
+    {
+      vtkNew<vtkXMLDataElement> none;
+      none->SetName("PointData");
+      piece->AddNestedElement(none);
+    }
+    return TReader::ReadPiece(piece);
+  }
+};
+
 template <typename TReader>
 auto
 ReadWith(TReader * reader, MessageCatcher * messages, const std::string & path, const char * kind)
@@ -96,8 +125,8 @@ template <typename TReader>
 auto
 ReadXmlWith(const std::string & path, const char * kind)
 {
-  vtkNew<MessageCatcher> messages;
-  vtkNew<TReader>        reader;
+  vtkNew<MessageCatcher>       messages;
+  vtkNew<PieceReader<TReader>> reader;
   reader->SetReaderErrorObserver(messages);
   reader->SetParserErrorObserver(messages);
   auto * output = ReadWith(reader.Get(), messages.Get(), path, kind);
@@ -115,13 +144,14 @@ ReadSurfaceWith(const std::string & path, const char * kind)
 
 template <typename TWriter, typename TData>
 void
-WriteXml(TData * data, const AtomicFile & file)
+WriteXml(TData * data, AtomicFile & file)
 {
   vtkNew<MessageCatcher> messages;
   vtkNew<TWriter>        writer;
   messages->Watch(writer);
-  writer->SetFileName(file.GetTemporaryPath().c_str());
   writer->SetInputData(data);
+  // VTK 9.1 may crash where the disk is full: it writes to memory.
+  writer->WriteToOutputStringOn();
   // Inline base64 compressed by zlib is what other readers of the format (meshio) understand.
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
@@ -129,9 +159,9 @@ WriteXml(TData * data, const AtomicFile & file)
   writer->SetHeaderTypeToUInt64();
   if (writer->Write() == 0 || messages->Any() || writer->GetErrorCode() != vtkErrorCode::NoError)
   {
-    const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
-    throw IOError(file.GetPath(), "cannot write: " + (full ? std::string("the disk is full") : messages->Text()));
+    throw IOError(file.GetPath(), "cannot write: " + messages->Text());
   }
+  file.Write(writer->GetOutputString());
 }
 } // namespace
 
@@ -208,13 +238,13 @@ ReadStlFile(const std::string & path)
 }
 
 void
-WriteVtuFile(vtkUnstructuredGrid * grid, const AtomicFile & file)
+WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file)
 {
   WriteXml<vtkXMLUnstructuredGridWriter>(grid, file);
 }
 
 void
-WriteVtpFile(vtkPolyData * data, const AtomicFile & file)
+WriteVtpFile(vtkPolyData * data, AtomicFile & file)
 {
   WriteXml<vtkXMLPolyDataWriter>(data, file);
 }

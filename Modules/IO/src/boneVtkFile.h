@@ -39,9 +39,9 @@ ReadStlFile(const std::string & path);
 
 /** Write a .vtu or .vtp file to the temporary path, without committing. */
 void
-WriteVtuFile(vtkUnstructuredGrid * grid, const AtomicFile & file);
+WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file);
 void
-WriteVtpFile(vtkPolyData * data, const AtomicFile & file);
+WriteVtpFile(vtkPolyData * data, AtomicFile & file);
 } // namespace bone
 
 #endif
