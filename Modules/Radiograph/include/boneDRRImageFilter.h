@@ -47,6 +47,7 @@ public:
 
   using MeshType = TMesh;
 
+  using Superclass::SetInput;
   virtual void
   SetInput(const TMesh * mesh)
   {

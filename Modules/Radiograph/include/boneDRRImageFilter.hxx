@@ -15,7 +15,6 @@ template <typename TMesh, typename TOutputImage>
 DRRImageFilter<TMesh, TOutputImage>::DRRImageFilter()
 {
   this->SetPrimaryInputName("Mesh");
-  this->AddRequiredInputName("Mesh", 0);
 }
 
 template <typename TMesh, typename TOutputImage>

@@ -1,0 +1,150 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneVoxelDRRImageFilter_hxx
+#define boneVoxelDRRImageFilter_hxx
+
+#include "boneVoxelDRRImageFilter.h"
+
+#include <itkImageRegionConstIteratorWithIndex.h>
+
+#include <algorithm>
+
+namespace bone
+{
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VoxelDRRImageFilter()
+{
+  this->SetPrimaryInputName("Image");
+  this->AddOptionalInputName("Mask");
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+void
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyInputInformation() ITKv5_CONST
+{
+  Superclass::VerifyInputInformation();
+  const TInputImage * image = this->GetInput();
+  const TMaskImage *  mask = this->GetMask();
+  if (mask == nullptr)
+  {
+    return;
+  }
+  constexpr double tolerance = 1e-4; // of a voxel, and of a direction's components
+  const auto &     spacing = image->GetSpacing();
+  const double     length = spacing.GetVnlVector().min_value() * tolerance;
+  if (mask->GetLargestPossibleRegion() != image->GetLargestPossibleRegion() ||
+      !mask->GetOrigin().GetVnlVector().is_equal(image->GetOrigin().GetVnlVector(), length) ||
+      !mask->GetSpacing().GetVnlVector().is_equal(spacing.GetVnlVector(), length) ||
+      !mask->GetDirection().GetVnlMatrix().is_equal(image->GetDirection().GetVnlMatrix(), tolerance))
+  {
+    itkExceptionMacro("The mask and the image lie on different grids (region, origin, spacing or direction): resample "
+                      "the mask to the image.");
+  }
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+auto
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::FindRegion() const -> RegionType
+{
+  RegionType         region = this->GetInput()->GetLargestPossibleRegion();
+  const TMaskImage * mask = this->GetMask();
+  if (mask == nullptr)
+  {
+    return region;
+  }
+  auto lower = region.GetUpperIndex(), upper = region.GetIndex();
+  bool found = false;
+  for (itk::ImageRegionConstIteratorWithIndex<TMaskImage> it(mask, region); !it.IsAtEnd(); ++it)
+  {
+    if (this->IsMasked(it.Get()))
+    {
+      found = true;
+      for (unsigned int k = 0; k < 3; ++k)
+      {
+        lower[k] = std::min(lower[k], it.GetIndex()[k]);
+        upper[k] = std::max(upper[k], it.GetIndex()[k]);
+      }
+    }
+  }
+  if (!found)
+  {
+    itkExceptionMacro("No voxel of the mask has " << (m_MaskLabel == 0 ? "a label" : "the label ")
+                                                  << (m_MaskLabel == 0 ? "" : std::to_string(m_MaskLabel))
+                                                  << ": check MaskLabel.");
+  }
+  RegionType counted;
+  counted.SetIndex(lower);
+  counted.SetUpperIndex(upper);
+  counted.PadByRadius(1);
+  counted.Crop(region);
+  return counted;
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+VoxelGrid
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const RegionType &  region,
+                                                                     const ParallelFor & parallelFor) const
+{
+  const TInputImage *                     image = this->GetInput();
+  const TMaskImage *                      mask = this->GetMask();
+  typename TInputImage::PointType         origin;
+  const typename TInputImage::SpacingType spacing = image->GetSpacing();
+  image->TransformIndexToPhysicalPoint(region.GetIndex(), origin);
+
+  VoxelGrid grid;
+  for (int k = 0; k < 3; ++k)
+  {
+    grid.size[k] = static_cast<int>(region.GetSize(k));
+    grid.origin[k] = origin[k];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      grid.axes(k, axis) = image->GetDirection()(k, axis) * spacing[axis];
+    }
+  }
+  grid.values.resize(region.GetNumberOfPixels());
+  const auto   conversion = this->GetConversion();
+  const bool   clamp = this->GetHUToAttenuation() != HUToAttenuation::None;
+  const auto   rows = static_cast<std::size_t>(grid.size[1]);
+  const auto   slice = rows * grid.size[0];
+  const auto & first = region.GetIndex();
+  parallelFor(grid.size[2], [&](std::size_t z) {
+    for (std::size_t y = 0; y < rows; ++y)
+    {
+      typename TInputImage::IndexType index = {
+        { first[0], first[1] + static_cast<itk::IndexValueType>(y), first[2] + static_cast<itk::IndexValueType>(z) }
+      };
+
+      const auto * from = image->GetBufferPointer() + image->ComputeOffset(index);
+      const auto * label = mask == nullptr ? nullptr : mask->GetBufferPointer() + mask->ComputeOffset(index);
+      float *      to = grid.values.data() + z * slice + y * grid.size[0];
+      for (int x = 0; x < grid.size[0]; ++x)
+      {
+        const double value = conversion.scale * from[x] + conversion.offset;
+        const bool   counts = label == nullptr || this->IsMasked(label[x]);
+        to[x] = counts ? static_cast<float>(clamp && value < 0 ? 0.0 : value) : 0.0f;
+      }
+    }
+  });
+  return grid;
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+void
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::ComputeIntegrals(float * integrals)
+{
+  const LoopRunner loops = this->MakeLoops();
+  ProjectVoxels(this->CopyGrid(this->FindRegion(), loops.prepare), this->GetGeometry()->GetView(), loops, integrals);
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+void
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
+{
+  Superclass::PrintSelf(os, indent);
+  os << indent << "MaskLabel: " << static_cast<typename itk::NumericTraits<MaskPixelType>::PrintType>(m_MaskLabel)
+     << '\n';
+}
+} // namespace bone
+
+#endif
