@@ -23,7 +23,6 @@ namespace
 constexpr int KnitBudget = 60;  // ring knits tried before another way is taken
 constexpr int MaximumDepth = 3; // halvings of a slab by planes in between
 constexpr int PlaneBudget = 40; // planes in between tried for one slab
-constexpr int KeepRegions = -1;
 
 std::vector<std::vector<Vector2>>
 OuterPolygons(const std::vector<Vector2> & plane, const std::vector<Section> & sections)
@@ -53,13 +52,12 @@ SlabTiler::KnitFrom(const Section & lower,
                     const Section & upper,
                     int             ring,
                     const Merge &   wall,
-                    int             regionOfAll,
+                    const std::vector<int> & regions,
                     int &           budget)
 {
   const RingPair rings{ lower.walks[ring], lower.inner[ring], lower.rings[ring],
                         upper.walks[ring], upper.inner[ring], upper.rings[ring] };
   const Merge    inner = WithSpurs(m_Pool.plane, lower, upper, ring, wall);
-  const int      region = regionOfAll == KeepRegions ? lower.region[ring] : regionOfAll;
   bool           more = true;
   for (int start = 0; more; ++start)
   {
@@ -69,8 +67,8 @@ SlabTiler::KnitFrom(const Section & lower,
     }
     const std::size_t mark = m_Tetrahedra.size();
     Merge             outer;
-    if (KnitRing(m_Pool, rings, inner, m_Metric, start, region, outer, m_Tetrahedra, more) &&
-        (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regionOfAll, budget)))
+    if (KnitRing(m_Pool, rings, inner, m_Metric, start, regions[ring], outer, m_Tetrahedra, more) &&
+        (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regions, budget)))
     {
       return true;
     }
@@ -80,7 +78,7 @@ SlabTiler::KnitFrom(const Section & lower,
 }
 
 bool
-SlabTiler::TryKnit(const Section & lower, const Section & upper, int regionOfAll)
+SlabTiler::TryKnit(const Section & lower, const Section & upper, const std::vector<int> & regions)
 {
   Merge inner;
   for (int variant = 0; MergeInnermostWalks(m_Pool.plane, lower, upper, variant, inner); ++variant)
@@ -88,7 +86,7 @@ SlabTiler::TryKnit(const Section & lower, const Section & upper, int regionOfAll
     int        budget = KnitBudget;
     const int  rings = static_cast<int>(lower.rings.size());
     const auto mark = m_Tetrahedra.size();
-    if (KnitFrom(lower, upper, rings - 1, inner, regionOfAll, budget))
+    if (KnitFrom(lower, upper, rings - 1, inner, regions, budget))
     {
       if (!WallsCross(m_Pool,
                       m_Stack,
@@ -129,9 +127,11 @@ SlabTiler::TileGroup(const std::vector<Section> & lower,
     m_Report.layerBranchings +=
       std::any_of(lower.begin(), lower.end(), lacks) || std::any_of(upper.begin(), upper.end(), lacks);
   }
-  if (composed && TryKnit(below, above, KeepRegions))
+  if (composed && TryKnit(below, above, RingRegions(below, above)))
   {
     m_UsedEdges = used;
+    MarkCollapsed(below);
+    MarkCollapsed(above);
     return;
   }
   if (TryIntermediate(lower, upper, lowerHeight, upperHeight, depth))
@@ -151,6 +151,33 @@ SlabTiler::TileGroup(const std::vector<Section> & lower,
   }
   throw std::runtime_error(place + ": the space to the next slice cannot be filled with valid tetrahedra; "
                                    "use a smaller slice step or contour spacing");
+}
+
+void
+SlabTiler::MarkCollapsed(const Section & section)
+{
+  if (section.depth < static_cast<int>(section.rings.size()))
+  {
+    m_Collapsed.insert(section.walks.back().begin(), section.walks.back().end());
+  }
+}
+
+std::vector<int>
+SlabTiler::RingRegions(const Section & lower, const Section & upper) const
+{
+  std::vector<int> regions = lower.region;
+  for (const Section * section : { &lower, &upper })
+  {
+    const Walk & walk = section->walks.back();
+    if (std::any_of(walk.begin(), walk.end(), [this](int v) { return m_Collapsed.count(v) > 0; }))
+    {
+      for (std::size_t k = static_cast<std::size_t>(section->depth); k < regions.size(); ++k)
+      {
+        regions[k] = regions[k - 1];
+      }
+    }
+  }
+  return regions;
 }
 
 bool
@@ -367,7 +394,8 @@ SlabTiler::Cap(const Section & section, double height, bool above)
   ++m_Report.caps;
   const std::size_t mark = m_Pool.plane.size();
   const Section     ridge = RidgeOver(section, height);
-  if (above ? TryKnit(section, ridge, Region::Cortical) : TryKnit(ridge, section, Region::Cortical))
+  const std::vector<int> cortical(section.rings.size(), Region::Cortical);
+  if (above ? TryKnit(section, ridge, cortical) : TryKnit(ridge, section, cortical))
   {
     return;
   }

@@ -45,9 +45,15 @@ public:
 
 private:
   bool
-  TryKnit(const Section & lower, const Section & upper, int regionOfAll);
+  TryKnit(const Section & lower, const Section & upper, const std::vector<int> & regions);
   bool
-  KnitFrom(const Section & lower, const Section & upper, int ring, const Merge & wall, int regionOfAll, int & budget);
+  KnitFrom(const Section & lower, const Section & upper, int ring, const Merge & wall, const std::vector<int> & regions, int & budget);
+  /** Region of each ring of the slab. A layer that ends at an axis where it already ended from the other side ends at
+   * the slice before instead, with a flat face: four of its faces would meet at the axis. */
+  std::vector<int>
+  RingRegions(const Section & lower, const Section & upper) const;
+  void
+  MarkCollapsed(const Section & section);
   bool
   TryIntermediate(const std::vector<Section> & lower,
                   const std::vector<Section> & upper,
@@ -79,6 +85,7 @@ private:
   std::vector<TiledTetra> & m_Tetrahedra;
   TilingReport &            m_Report;
   EdgeSet                   m_UsedEdges; ///< edges that bridges run along
+  std::set<int>             m_Collapsed; ///< vertices of axes at which a layer ends
   int                       m_Budget{ 0 };
 };
 
