@@ -6,6 +6,8 @@
 
 #include "boneTetraComplex.h"
 
+#include <functional>
+
 namespace bone
 {
 /** What a flip did. */
@@ -53,10 +55,13 @@ struct FlipReport
   std::size_t refused[MeshOperationCount]{};
 };
 
+/** Called after each flip that was done. */
+using FlipObserver = std::function<void(const FlipResult &)>;
+
 /** Flips at cells below the target angle, the worst first, until a pass changes nothing. Every flip strictly raises the
- * smallest angle of the cells it touches. `changed`, where given, gets 1 for every slot that was written. */
+ * smallest angle of the cells it touches. */
 FlipReport
-ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, std::vector<char> * changed = nullptr);
+ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const FlipObserver & observer = {});
 } // namespace bone
 
 #endif

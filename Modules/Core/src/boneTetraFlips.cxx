@@ -211,11 +211,11 @@ public:
   CellImprover(TetraComplex &         complex,
                const FlipParameters & parameters,
                FlipReport &           report,
-               std::vector<char> *    changed)
+               const FlipObserver &   observer)
     : m_Complex(complex)
     , m_Parameters(parameters)
     , m_Report(report)
-    , m_Changed(changed)
+    , m_Observer(observer)
   {}
 
   bool
@@ -262,13 +262,9 @@ private:
       return false;
     }
     ++m_Report.done;
-    if (m_Changed != nullptr)
+    if (m_Observer)
     {
-      m_Changed->resize(m_Complex.Size(), 0);
-      for (IdType t : result.created)
-      {
-        (*m_Changed)[t] = 1;
-      }
+      m_Observer(result);
     }
     return true;
   }
@@ -276,7 +272,7 @@ private:
   TetraComplex &         m_Complex;
   const FlipParameters & m_Parameters;
   FlipReport &           m_Report;
-  std::vector<char> *    m_Changed;
+  const FlipObserver &   m_Observer;
 };
 } // namespace
 
@@ -340,10 +336,10 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
 }
 
 FlipReport
-ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, std::vector<char> * changed)
+ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const FlipObserver & observer)
 {
   FlipReport   report;
-  CellImprover improver(complex, parameters, report, changed);
+  CellImprover improver(complex, parameters, report, observer);
   const double limit = std::cos(parameters.targetAngle);
   for (int pass = 0; pass < parameters.maximumPasses; ++pass)
   {

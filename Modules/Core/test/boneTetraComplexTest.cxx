@@ -177,7 +177,13 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
     {
       before = std::max(before, CellCosine(complex, t));
     }
-    const auto report = ImproveByFlips(complex, { 0.5, 4, seed == 3 }, &changed);
+    const auto report = ImproveByFlips(complex, { 0.5, 4, seed == 3 }, [&](const FlipResult & flip) {
+      changed.resize(complex.Size(), 0);
+      for (IdType t : flip.created)
+      {
+        changed[t] = 1;
+      }
+    });
     EXPECT_GT(report.done, 0u);
     const auto made = Compacted(complex, mesh);
     const auto validation = ValidateMesh(made);
