@@ -1,6 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneImageCheck.h"
 #include "boneImageFile.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
@@ -9,6 +10,7 @@
 #include <itkImageIOFactory.h>
 #include <itkImageRegionConstIteratorWithIndex.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -68,9 +70,37 @@ OpenImage(const std::string & path)
   return io;
 }
 
+std::string
+NotFiniteText(std::size_t count, const CTImage::IndexType & first)
+{
+  return Say("has ", count, " voxels that are NaN or infinite, the first at ", first, ": fill them first");
+}
+
+void
+RequireWholeFile(const std::string & path, const itk::ImageIOBase * io)
+{
+  const ImageFileCheck check = CheckImageFile(path, io);
+  if (!check.whole)
+  {
+    throw IOError(path, "is cut short or damaged: not all voxels are there");
+  }
+  if (check.notFinite > 0)
+  {
+    CTImage::IndexType first{};
+    std::size_t        rest = check.firstNotFinite;
+    for (unsigned int d = 0; d < std::min(3u, io->GetNumberOfDimensions()); ++d)
+    {
+      first[d] = static_cast<itk::IndexValueType>(rest % io->GetDimensions(d));
+      rest /= io->GetDimensions(d);
+    }
+    throw IOError(path, NotFiniteText(check.notFinite, first));
+  }
+}
+
 CTImage::Pointer
 LoadImage(const std::string & path, itk::ImageIOBase * io)
 {
+  RequireWholeFile(path, io);
   auto reader = itk::ImageFileReader<CTImage>::New();
   reader->SetImageIO(io);
   reader->SetFileName(path);
@@ -126,8 +156,7 @@ RequireFinite(const CTImage * image, const std::string & path)
   }
   if (count > 0)
   {
-    throw IOError(path,
-                  Say("has ", count, " voxels that are NaN or infinite, the first at ", first, ": fill them first"));
+    throw IOError(path, NotFiniteText(count, first));
   }
 }
 } // namespace

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneAtomicFile.h"
+#include "boneImageCheck.h"
 #include "boneImageFile.h"
 #include "boneRefuse.h"
 
@@ -38,9 +39,17 @@ ReadBack(const std::string & file, std::size_t numberOfPixels)
   {
     Refuse("what was written cannot be read back whole (is the disk full?)");
   }
-  io->SetIORegion(region);
-  std::vector<char> buffer(io->GetImageSizeInBytes());
-  io->Read(buffer.data());
+  const ImageFileCheck check = CheckImageFile(file, io);
+  if (!check.whole)
+  {
+    Refuse("what was written cannot be read back whole (is the disk full?)");
+  }
+  if (!check.known)
+  {
+    io->SetIORegion(region);
+    std::vector<char> buffer(io->GetImageSizeInBytes());
+    io->Read(buffer.data());
+  }
 }
 
 template <typename TImage>

@@ -1,0 +1,225 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneImageCheck.h"
+
+#include "boneVtkFile.h"
+
+#include <itk_zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace bone
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+// A file that zlib reads whether it is compressed or not.
+using GzFile = std::unique_ptr<std::remove_pointer_t<gzFile>, int (*)(gzFile)>;
+
+GzFile
+OpenGz(const std::string & path)
+{
+  GzFile file(gzopen(path.c_str(), "rb"), gzclose);
+  if (file)
+  {
+    gzbuffer(file.get(), 1u << 18);
+  }
+  return file;
+}
+
+// What is needed of a NIfTI-1 header (348 bytes; offsets as in nifti1.h).
+struct NiftiHeader
+{
+  bool        valid{ false };
+  bool        swapped{ false };
+  bool        single{ false }; // header and data in one file
+  int         datatype{ 0 };
+  std::size_t voxels{ 1 };
+  std::size_t bytes{ 0 };
+  std::size_t offset{ 0 };
+};
+
+template <typename T>
+T
+Decode(const char * bytes, bool swapped)
+{
+  std::array<char, sizeof(T)> ordered;
+  std::copy_n(bytes, sizeof(T), ordered.begin());
+  if (swapped)
+  {
+    std::reverse(ordered.begin(), ordered.end());
+  }
+  T value;
+  std::memcpy(&value, ordered.data(), sizeof(T));
+  return value;
+}
+
+NiftiHeader
+ReadNiftiHeader(const std::string & path)
+{
+  NiftiHeader           header;
+  std::array<char, 348> raw;
+  const GzFile          file = OpenGz(path);
+  if (!file || gzread(file.get(), raw.data(), raw.size()) != static_cast<int>(raw.size()))
+  {
+    return header;
+  }
+  const auto dimensions = Decode<std::int16_t>(&raw[40], false);
+  header.swapped = dimensions < 1 || dimensions > 7;
+  header.valid = Decode<std::int32_t>(&raw[0], header.swapped) == 348;
+  const int n = Decode<std::int16_t>(&raw[40], header.swapped);
+  for (int d = 1; d <= std::min(n, 7); ++d)
+  {
+    header.voxels *= static_cast<std::size_t>(std::max<int>(1, Decode<std::int16_t>(&raw[40 + 2 * d], header.swapped)));
+  }
+  header.datatype = Decode<std::int16_t>(&raw[70], header.swapped);
+  header.bytes = header.voxels * static_cast<std::size_t>(Decode<std::int16_t>(&raw[72], header.swapped)) / 8;
+  header.offset = static_cast<std::size_t>(std::max(0.0f, Decode<float>(&raw[108], header.swapped)));
+  header.single = std::memcmp(&raw[344], "n+1", 3) == 0;
+  return header;
+}
+
+// The file of a pair that ends in .hdr or .img, plain or compressed; the path itself where there is none.
+std::string
+PairMember(const std::string & path, const std::string & extension)
+{
+  std::string stem = path;
+  for (const char * ending : { ".gz", ".hdr", ".img" })
+  {
+    stem = HasExtension(stem, ending) ? stem.substr(0, stem.size() - std::strlen(ending)) : stem;
+  }
+  for (const std::string & candidate : { stem + extension, stem + extension + ".gz" })
+  {
+    std::error_code error;
+    if (fs::exists(candidate, error))
+    {
+      return candidate;
+    }
+  }
+  return path;
+}
+
+template <typename T>
+void
+CountNotFinite(const std::vector<char> & block, bool swapped, std::size_t before, ImageFileCheck & check)
+{
+  for (std::size_t i = 0; i + sizeof(T) <= block.size(); i += sizeof(T))
+  {
+    if (!std::isfinite(Decode<T>(&block[i], swapped)) && check.notFinite++ == 0)
+    {
+      check.firstNotFinite = (before + i) / sizeof(T);
+    }
+  }
+}
+
+// Whether the compressed stream ends as it must, so that its checksum was compared too.
+bool
+EndsWell(gzFile file)
+{
+  char      more = 0;
+  int       error = Z_OK;
+  const int read = gzread(file, &more, 1);
+  gzerror(file, &error);
+  return read >= 0 && error != Z_BUF_ERROR;
+}
+
+ImageFileCheck
+CheckNifti(const std::string & path)
+{
+  constexpr int  floatType = 16, doubleType = 64;
+  ImageFileCheck check;
+  const bool     pair = HasExtension(path, ".img") || HasExtension(path, ".img.gz") || HasExtension(path, ".hdr") ||
+                    HasExtension(path, ".hdr.gz");
+  const NiftiHeader header = ReadNiftiHeader(pair ? PairMember(path, ".hdr") : path);
+  check.known = header.valid;
+  if (!header.valid)
+  {
+    return check;
+  }
+  const GzFile      file = OpenGz(header.single ? path : PairMember(path, ".img"));
+  std::vector<char> block(std::size_t{ 1 } << 20);
+  check.whole = file != nullptr && gzseek(file.get(), static_cast<z_off_t>(header.offset), SEEK_SET) >= 0;
+  for (std::size_t done = 0; check.whole && done < header.bytes; done += block.size())
+  {
+    block.resize(std::min(block.size(), header.bytes - done));
+    check.whole =
+      gzread(file.get(), block.data(), static_cast<unsigned int>(block.size())) == static_cast<int>(block.size());
+    if (check.whole && header.datatype == floatType)
+    {
+      CountNotFinite<float>(block, header.swapped, done, check);
+    }
+    if (check.whole && header.datatype == doubleType)
+    {
+      CountNotFinite<double>(block, header.swapped, done, check);
+    }
+  }
+  check.whole = check.whole && EndsWell(file.get());
+  return check;
+}
+
+std::string
+Trim(const std::string & text)
+{
+  const char * blanks = " \t\r";
+  const auto   first = text.find_first_not_of(blanks);
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+ImageFileCheck
+CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
+{
+  ImageFileCheck                     check;
+  std::ifstream                      stream(path, std::ios::binary);
+  std::map<std::string, std::string> fields;
+  for (std::string line; fields.count("ElementDataFile") == 0 && std::getline(stream, line);)
+  {
+    const auto equals = line.find('=');
+    fields[Trim(line.substr(0, equals))] = equals == std::string::npos ? "" : Trim(line.substr(equals + 1));
+  }
+  const std::string data = fields["ElementDataFile"];
+  const auto isTrue = [](const std::string & text) { return !text.empty() && (text[0] == 'T' || text[0] == 't'); };
+  const bool oneFile = data.find('%') == std::string::npos && data.rfind("LIST", 0) != 0;
+  if (!stream || !isTrue(fields["BinaryData"]) || !oneFile)
+  {
+    return check;
+  }
+  check.known = true;
+  const bool      local = data == "LOCAL" || data == "Local" || data == "local";
+  const auto      start = local ? static_cast<std::size_t>(stream.tellg()) : 0;
+  std::error_code error;
+  const auto      size = fs::file_size(local ? fs::path(path) : fs::path(path).parent_path() / data, error);
+  std::size_t     needed = numberOfBytes;
+  if (isTrue(fields["CompressedData"]))
+  {
+    needed = static_cast<std::size_t>(std::strtoull(fields["CompressedDataSize"].c_str(), nullptr, 10));
+  }
+  check.whole = !error && size >= start + std::max<std::size_t>(needed, 1);
+  return check;
+}
+} // namespace
+
+ImageFileCheck
+CheckImageFile(const std::string & path, const itk::ImageIOBase * io)
+{
+  const std::string format = io->GetNameOfClass();
+  if (format == "NiftiImageIO")
+  {
+    return CheckNifti(path);
+  }
+  if (format == "MetaImageIO")
+  {
+    return CheckMetaImage(path, static_cast<std::size_t>(io->GetImageSizeInBytes()));
+  }
+  return {};
+}
+} // namespace bone

@@ -1,0 +1,108 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneImageIO.h"
+#include "boneTestFiles.h"
+
+#include <itkGDCMImageIO.h>
+#include <itkImageFileWriter.h>
+#include <itkMetaDataObject.h>
+
+namespace bone
+{
+using testing::HasSubstr;
+
+namespace
+{
+// One CT slice of 6 x 5 pixels, 0.5 x 0.5 mm, whose pixels all have the given value.
+void
+WriteSlice(const std::string & path, double x, double z, short value, const std::string & series)
+{
+  auto image = LabelImage::New();
+  image->SetRegions(LabelImage::SizeType{ { 6, 5, 1 } });
+  image->Allocate();
+  image->FillBuffer(value);
+  LabelImage::SpacingType spacing;
+  spacing.Fill(0.5);
+  image->SetSpacing(spacing);
+  auto       io = itk::GDCMImageIO::New();
+  auto &     dictionary = image->GetMetaDataDictionary();
+  const auto put = [&](const char * key, const std::string & text) {
+    itk::EncapsulateMetaData<std::string>(dictionary, key, text);
+  };
+  put("0008|0016", "1.2.840.10008.5.1.4.1.1.2");
+  put("0008|0060", "CT");
+  put("0028|0004", "MONOCHROME2");
+  put("0020|000d", "1.2.826.0.1.3680043.2.1125.1");
+  put("0020|000e", "1.2.826.0.1.3680043.2.1125.1." + series);
+  put("0020|0032", std::to_string(x) + "\\20\\" + std::to_string(z));
+  put("0020|0037", "1\\0\\0\\0\\1\\0");
+  io->KeepOriginalUIDOn();
+  auto writer = itk::ImageFileWriter<LabelImage>::New();
+  writer->SetImageIO(io);
+  writer->SetInput(image);
+  writer->SetFileName(path);
+  writer->Update();
+}
+} // namespace
+
+class DicomSeriesTest : public FileTest
+{
+protected:
+  std::string
+  ErrorOfReading()
+  {
+    return ErrorOf([&] { ReadCT(m_Folder.string()); });
+  }
+};
+
+TEST_F(DicomSeriesTest, AnEvenSeriesIsReadInTheOrderOfItsPositions)
+{
+  for (int k = 0; k < 5; ++k)
+  {
+    WriteSlice(Path(std::to_string(9 - k) + ".dcm"), 10, -30 + 1.25 * k, static_cast<short>(100 * k), "1");
+  }
+  const auto ct = ReadCT(m_Folder.string());
+  EXPECT_EQ(ct->GetLargestPossibleRegion().GetSize(), (CTImage::SizeType{ { 6, 5, 5 } }));
+  EXPECT_NEAR(ct->GetSpacing()[2], 1.25, 1e-9);
+  EXPECT_NEAR(ct->GetOrigin()[0], 10, 1e-9);
+  EXPECT_NEAR(ct->GetOrigin()[2], -30, 1e-9);
+  for (int k = 0; k < 5; ++k)
+  {
+    EXPECT_EQ(ct->GetPixel({ { 3, 2, k } }), 100.0f * k);
+  }
+}
+
+TEST_F(DicomSeriesTest, RefusesAMissingSlice)
+{
+  for (int k = 0; k < 9; ++k)
+  {
+    if (k != 5)
+    {
+      WriteSlice(Path(std::to_string(k) + ".dcm"), 10, 1.25 * k, 0, "1");
+    }
+  }
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("slices are not evenly spaced"));
+}
+
+TEST_F(DicomSeriesTest, RefusesATiltedGantry)
+{
+  for (int k = 0; k < 5; ++k)
+  {
+    WriteSlice(Path(std::to_string(k) + ".dcm"), 10 + 0.5 * k, 1.25 * k, 0, "1");
+  }
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("shift sideways"));
+}
+
+TEST_F(DicomSeriesTest, RefusesSeveralSeriesOneSliceAndNone)
+{
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("is a folder without a DICOM series"));
+  WriteText("note.txt", "no DICOM");
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("is a folder without a DICOM series"));
+  WriteSlice(Path("0.dcm"), 0, 0, 0, "1");
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("series of one slice"));
+  EXPECT_THAT(ErrorOf([&] { ReadCT(Path("0.dcm")); }), HasSubstr("for a DICOM series name its folder"));
+  WriteSlice(Path("1.dcm"), 0, 1, 0, "2");
+  EXPECT_THAT(ErrorOfReading(), HasSubstr("holds 2 DICOM series"));
+}
+} // namespace bone
