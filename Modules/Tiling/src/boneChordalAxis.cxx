@@ -234,42 +234,82 @@ Compact(PlanarTree & tree, const std::vector<char> & dead)
   tree.edges = std::move(edges);
 }
 
-/** Cuts the shortest insignificant leaf branch; false where none is left. */
-bool
-PruneOneBranch(PlanarTree & tree, const std::vector<Vector2> & polygon, double factor)
+/** Keeps of a tree what reaches beyond a disk: from the vertex of largest clearance, paths to leaves are added, the
+ * farthest in clearances of where it leaves the kept part first, while it is more than `reach` clearances long. */
+void
+KeepSignificantPaths(PlanarTree & tree, const std::vector<Vector2> & polygon, double reach)
 {
-  const auto       neighbors = Adjacency(tree);
-  std::vector<int> shortest;
-  double           shortestLength = std::numeric_limits<double>::infinity();
-  for (int v = 0; v < static_cast<int>(tree.points.size()); ++v)
+  const auto          neighbors = Adjacency(tree);
+  const int           n = static_cast<int>(tree.points.size());
+  std::vector<double> clearance(n);
+  for (int v = 0; v < n; ++v)
   {
-    if (neighbors[v].size() != 1)
+    clearance[v] = DistanceToPolygon(tree.points[v], polygon);
+  }
+  const int         pole = static_cast<int>(std::max_element(clearance.begin(), clearance.end()) - clearance.begin());
+  std::vector<int>  parent(n, -1), order{ pole };
+  std::vector<char> dead(n, 1);
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    for (int u : neighbors[order[i]])
     {
-      continue;
-    }
-    auto branch = LeafBranch(neighbors, v);
-    if (neighbors[branch.back()].size() < 3)
-    {
-      continue; // the whole tree is one path
-    }
-    const double length = Length(tree, branch);
-    if (length < factor * DistanceToPolygon(tree.points[branch.back()], polygon) && length < shortestLength)
-    {
-      shortest = branch;
-      shortestLength = length;
+      if (u != parent[order[i]])
+      {
+        parent[u] = order[i];
+        order.push_back(u);
+      }
     }
   }
-  if (shortest.empty())
+  dead[pole] = 0;
+  for (;;)
   {
-    return false;
-  }
-  std::vector<char> dead(tree.points.size(), 0);
-  for (std::size_t i = 0; i + 1 < shortest.size(); ++i)
-  {
-    dead[shortest[i]] = 1;
+    // Way from the kept part, and the clearance where it leaves it, handed down the tree.
+    std::vector<double> way(n, 0.0), start(clearance);
+    int                 farthest = -1;
+    double              most = reach;
+    for (int v : order)
+    {
+      if (!dead[v])
+      {
+        continue;
+      }
+      way[v] = way[parent[v]] + (tree.points[v] - tree.points[parent[v]]).norm();
+      start[v] = start[parent[v]];
+      if (neighbors[v].size() == 1 && way[v] + clearance[v] > most * start[v])
+      {
+        most = (way[v] + clearance[v]) / start[v];
+        farthest = v;
+      }
+    }
+    if (farthest < 0)
+    {
+      break;
+    }
+    for (int v = farthest; dead[v]; v = parent[v])
+    {
+      dead[v] = 0;
+    }
   }
   Compact(tree, dead);
-  return true;
+}
+
+/** Moves vertices of degree 2 to the middle of their neighbours, some rounds. */
+void
+Straighten(PlanarTree & tree)
+{
+  const auto neighbors = Adjacency(tree);
+  for (int round = 0; round < 6; ++round)
+  {
+    auto moved = tree.points;
+    for (std::size_t v = 0; v < tree.points.size(); ++v)
+    {
+      if (neighbors[v].size() == 2)
+      {
+        moved[v] = 0.5 * tree.points[v] + 0.25 * (tree.points[neighbors[v][0]] + tree.points[neighbors[v][1]]);
+      }
+    }
+    tree.points = std::move(moved);
+  }
 }
 
 /** Cuts each leaf branch back to where the way to its tip is `factor` times the clearance, about the centre of the
@@ -483,26 +523,28 @@ ChordalAxis(const std::vector<Vector2> & polygon)
 PlanarTree
 SimplifyAxis(const PlanarTree & axis, const std::vector<Vector2> & polygon, double factor, double spacing)
 {
+  if (axis.edges.empty())
+  {
+    return axis;
+  }
   PlanarTree tree = axis;
-  while (PruneOneBranch(tree, polygon, 1.5 * factor))
-  {}
+  KeepSignificantPaths(tree, polygon, 1.0 + factor);
+  if (tree.edges.empty())
+  {
+    return tree;
+  }
   TrimLeaves(tree, polygon, factor);
-  while (PruneOneBranch(tree, polygon, factor))
-  {}
   double length = 0.0;
   for (const auto & e : tree.edges)
   {
     length += (tree.points[e[0]] - tree.points[e[1]]).norm();
   }
-  if (tree.edges.empty())
-  {
-    return tree;
-  }
   const Vector2 middle = Middle(tree);
-  if (length < factor * DistanceToPolygon(middle, polygon))
+  if (length < 0.5 * factor * DistanceToPolygon(middle, polygon))
   {
     return PlanarTree{ { middle }, {} };
   }
+  Straighten(tree);
   return Resample(tree, spacing);
 }
 
@@ -531,7 +573,7 @@ TreeOfWalk(const std::vector<Vector2> & plane, const Walk & walk)
 }
 
 PlanarTree
-CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<Vector2> & polygon)
+CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<Vector2> & polygon, double leastEdge)
 {
   constexpr double  pull = 0.35;
   constexpr double  leastClearance = 0.3; // of the largest on the tree
@@ -557,7 +599,10 @@ CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<
     dead[v] = !PointInPolygon(q, polygon) || DistanceToPolygon(q, polygon) < leastClearance * largest;
   }
   Compact(carried, dead);
-  return carried.points.size() == carried.edges.size() + 1 ? carried : PlanarTree{};
+  const bool squeezed = std::any_of(carried.edges.begin(), carried.edges.end(), [&](const std::array<int, 2> & e) {
+    return (carried.points[e[0]] - carried.points[e[1]]).norm() < leastEdge;
+  });
+  return carried.points.size() == carried.edges.size() + 1 && !squeezed ? carried : PlanarTree{};
 }
 
 Walk

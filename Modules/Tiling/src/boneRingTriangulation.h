@@ -38,9 +38,9 @@ struct PlanarTree
 PlanarTree
 ChordalAxis(const std::vector<Vector2> & polygon);
 
-/** Removes leaf branches shorter than 1.5 `factor` clearances (distances to the polygon) of where they start, cuts the
- * others back by `factor` clearances, and resamples what remains to points about `spacing` apart; a single point where
- * the rest is shorter than `factor` clearances. */
+/** Keeps of an axis the paths that reach more than 1 + `factor` clearances (distances to the polygon) beyond the rest,
+ * beginning at the largest inscribed disk, cuts their ends back by `factor` clearances, straightens them and resamples
+ * them to points about `spacing` apart; a single point for a round shape. */
 PlanarTree
 SimplifyAxis(const PlanarTree & axis, const std::vector<Vector2> & polygon, double factor, double spacing);
 
@@ -52,7 +52,7 @@ TreeOfWalk(const std::vector<Vector2> & plane, const Walk & walk);
  * way to the nearest point of `target`, and what comes to lie outside the polygon or close to it is cut off. May be
  * empty. */
 PlanarTree
-CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<Vector2> & polygon);
+CarryAxis(const PlanarTree & tree, const PlanarTree & target, const std::vector<Vector2> & polygon, double leastEdge);
 
 /** The closed walk around a tree, counter-clockwise; ids are those of `vertexOf` for the tree's points. */
 Walk

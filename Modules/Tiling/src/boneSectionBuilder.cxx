@@ -17,8 +17,9 @@ namespace tiling
 {
 namespace
 {
-constexpr double PruneFactor = 1.0; // significance of the axis in clearances, see SimplifyAxis
-constexpr double AxisSpacing = 1.5; // spacing along the axis in mean edges of its contour
+constexpr double PruneFactor = 1.0;      // significance of the axis in clearances, see SimplifyAxis
+constexpr double AxisSpacing = 1.5;      // spacing along the axis in mean edges of its contour
+constexpr double LeastCarriedEdge = 0.4; // of the spacing
 constexpr int    RefinementRounds = 3;
 constexpr double LeastEdge = 0.6; // mm; shorter edges are not split
 
@@ -196,7 +197,7 @@ OwnAxis(SectionMaker & maker, const PieceOutline & piece, const Section & sectio
   }
   const PlanarTree chordal = ChordalAxis(loop.points);
   const double     spacing = AxisSpacing * MeanEdge(loop.points);
-  for (double factor = PruneFactor; factor > 0.1; factor /= 2)
+  for (double factor = PruneFactor; factor > 0.2; factor /= 1.6)
   {
     for (const double step : { spacing, spacing / 3 })
     {
@@ -224,9 +225,12 @@ AddAxis(SectionMaker &       maker,
   {
     return false;
   }
-  if (!carried.points.empty())
+  // A round piece has its point; a tree drawn together there would only be in the way.
+  if (!carried.points.empty() && !(best.tree.edges.empty() && !carried.edges.empty()))
   {
-    auto candidate = maker.Evaluate(CarryAxis(carried, best.tree, piece.loops.back().points), section);
+    const auto & polygon = piece.loops.back().points;
+    auto         candidate = maker.Evaluate(
+      CarryAxis(carried, best.tree, polygon, LeastCarriedEdge * AxisSpacing * MeanEdge(polygon)), section);
     if (std::isfinite(candidate.cost) && candidate.cost <= tolerance * best.cost)
     {
       best = std::move(candidate);

@@ -48,12 +48,12 @@ Pick(const std::vector<Section> & sections, const std::vector<int> & ids)
 } // namespace
 
 bool
-SlabTiler::KnitFrom(const Section & lower,
-                    const Section & upper,
-                    int             ring,
-                    const Merge &   wall,
+SlabTiler::KnitFrom(const Section &          lower,
+                    const Section &          upper,
+                    int                      ring,
+                    const Merge &            wall,
                     const std::vector<int> & regions,
-                    int &           budget)
+                    int &                    budget)
 {
   const RingPair rings{ lower.walks[ring], lower.inner[ring], lower.rings[ring],
                         upper.walks[ring], upper.inner[ring], upper.rings[ring] };
@@ -392,8 +392,8 @@ SlabTiler::Cap(const Section & section, double height, bool above)
     return;
   }
   ++m_Report.caps;
-  const std::size_t mark = m_Pool.plane.size();
-  const Section     ridge = RidgeOver(section, height);
+  const std::size_t      mark = m_Pool.plane.size();
+  const Section          ridge = RidgeOver(section, height);
   const std::vector<int> cortical(section.rings.size(), Region::Cortical);
   if (above ? TryKnit(section, ridge, cortical) : TryKnit(ridge, section, cortical))
   {

@@ -47,7 +47,12 @@ private:
   bool
   TryKnit(const Section & lower, const Section & upper, const std::vector<int> & regions);
   bool
-  KnitFrom(const Section & lower, const Section & upper, int ring, const Merge & wall, const std::vector<int> & regions, int & budget);
+  KnitFrom(const Section &          lower,
+           const Section &          upper,
+           int                      ring,
+           const Merge &            wall,
+           const std::vector<int> & regions,
+           int &                    budget);
   /** Region of each ring of the slab. A layer that ends at an axis where it already ended from the other side ends at
    * the slice before instead, with a flat face: four of its faces would meet at the axis. */
   std::vector<int>

@@ -1,0 +1,268 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneContourTilingMeshSource.h"
+
+#include "boneMeshValidator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace
+{
+using bone::ContourStack;
+using bone::MeshArrays;
+using bone::Vector2;
+using bone::Vector3;
+using Source = bone::ContourTilingMeshSource<>;
+
+constexpr double Pi = 3.14159265358979323846;
+
+struct Loop
+{
+  Vector2 centre;
+  double  rx, ry;
+  int     layer, region;
+};
+
+/** A stack of ellipses: one list of loops a slice, `points` on each. Holes run clockwise. */
+ContourStack::Pointer
+MakeStack(const std::vector<std::vector<Loop>> & slices, double step, int points = 24)
+{
+  ContourStack::SliceContainer container;
+  for (std::size_t k = 0; k < slices.size(); ++k)
+  {
+    bone::ContourSlice slice;
+    slice.origin = Vector3(0, 0, step * static_cast<double>(k));
+    for (const Loop & loop : slices[k])
+    {
+      bone::Contour contour;
+      contour.layer = loop.layer;
+      contour.region = loop.region;
+      contour.id = static_cast<int>(slice.contours.size());
+      for (int i = 0; i < points; ++i)
+      {
+        const double t = (loop.region == 0 ? -1 : 1) * 2 * Pi * i / points;
+        contour.points.emplace_back(
+          loop.centre.x() + loop.rx * std::cos(t), loop.centre.y() + loop.ry * std::sin(t), slice.origin.z());
+      }
+      slice.contours.push_back(contour);
+    }
+    container.push_back(slice);
+  }
+  auto stack = ContourStack::New();
+  stack->SetSlices(container);
+  return stack;
+}
+
+MeshArrays
+Tile(const ContourStack * stack, bone::TilingReport * report = nullptr)
+{
+  auto source = Source::New();
+  source->SetInput(stack);
+  source->Update();
+  if (report != nullptr)
+  {
+    *report = source->GetReport();
+  }
+  return source->GetOutput()->GetArrays();
+}
+
+double
+Volume(const MeshArrays & mesh, int region)
+{
+  double volume = 0.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const auto & v = mesh.tetrahedra[t];
+    volume += region == 0 || mesh.region[t] == region
+                ? bone::SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
+                : 0.0;
+  }
+  return volume;
+}
+
+/** Area of the inscribed regular polygon over that of its ellipse. */
+double
+PolygonShare(int points)
+{
+  return points * std::sin(2 * Pi / points) / (2 * Pi);
+}
+
+const std::vector<Loop> Shaft = { { { 0, 0 }, 12, 10, 0, 1 }, { { 0, 0 }, 9, 7, 1, 2 }, { { 0, 0 }, 6, 4, 2, 3 } };
+} // namespace
+
+TEST(ContourTilingMeshSource, FillsAFlatCutCylinderExactly)
+{
+  auto stack = MakeStack(std::vector<std::vector<Loop>>(6, Shaft), 2.0);
+  stack->SetOpenStart(true);
+  stack->SetOpenEnd(true);
+  const MeshArrays mesh = Tile(stack);
+  EXPECT_TRUE(bone::ValidateMesh(mesh).IsValid()) << bone::ValidateMesh(mesh).Summary();
+  const double share = PolygonShare(24);
+  EXPECT_NEAR(Volume(mesh, 0), 10 * Pi * 120 * share, 1e-6);
+  EXPECT_NEAR(Volume(mesh, 1), 10 * Pi * (120 - 63) * share, 1e-6);
+  EXPECT_NEAR(Volume(mesh, 2), 10 * Pi * (63 - 24) * share, 1e-6);
+  EXPECT_NEAR(Volume(mesh, 3), 10 * Pi * 24 * share, 1e-6);
+}
+
+TEST(ContourTilingMeshSource, KeepsContourPointsLayersAndSlices)
+{
+  auto               stack = MakeStack(std::vector<std::vector<Loop>>(3, Shaft), 2.0);
+  const MeshArrays   mesh = Tile(stack);
+  std::array<int, 3> count{ { 0, 0, 0 } };
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    const double z = mesh.points[p].z();
+    if (z >= 0 && z <= 4 && mesh.layer[p] < 3)
+    {
+      EXPECT_DOUBLE_EQ(z, 2.0 * mesh.slice[p]);
+      ++count[mesh.layer[p]];
+    }
+  }
+  EXPECT_THAT((std::vector<int>(count.begin(), count.end())), ::testing::Each(3 * 24));
+}
+
+TEST(ContourTilingMeshSource, ClosesEndsThatStayInTheImage)
+{
+  std::vector<std::vector<Loop>> ball;
+  for (double z = -9; z <= 9; z += 2)
+  {
+    const double r = std::sqrt(100 - z * z);
+    ball.push_back({ { { 0, 0 }, r, r, 0, 1 } });
+  }
+  bone::TilingReport report;
+  const MeshArrays   mesh = Tile(MakeStack(ball, 2.0, 32), &report);
+  EXPECT_EQ(report.caps, 2);
+  EXPECT_EQ(bone::ValidateMesh(mesh).boundaryEuler, 2);
+  EXPECT_NEAR(Volume(mesh, 0), 4.0 / 3.0 * Pi * 1000, 0.03 * 4200);
+}
+
+TEST(ContourTilingMeshSource, JoinsContoursThatSplit)
+{
+  std::vector<std::vector<Loop>> slices(3, { { { 0, 0 }, 16, 8, 0, 1 }, { { 0, 0 }, 13, 5, 1, 2 } });
+  const std::vector<Loop>        two = {
+           { { -9, 0 }, 7, 7, 0, 1 }, { { -9, 0 }, 4, 4, 1, 2 }, { { 9, 0 }, 7, 7, 0, 1 }, { { 9, 0 }, 4, 4, 1, 2 }
+  };
+  slices.insert(slices.end(), 3, two);
+  bone::TilingReport report;
+  const MeshArrays   mesh = Tile(MakeStack(slices, 2.0), &report);
+  const auto         validation = bone::ValidateMesh(mesh);
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 1);
+  EXPECT_EQ(validation.boundaryEuler, 2);
+  EXPECT_EQ(report.branchings, 1);
+}
+
+TEST(ContourTilingMeshSource, LetsLayersBeginAndEnd)
+{
+  std::vector<std::vector<Loop>> slices;
+  for (int k = 0; k < 9; ++k)
+  {
+    slices.push_back({ Shaft[0] });
+    if (k >= 2 && k < 7)
+    {
+      slices.back().push_back(Shaft[1]);
+    }
+    if (k >= 3 && k < 5)
+    {
+      slices.back().push_back(Shaft[2]);
+    }
+  }
+  bone::TilingReport report;
+  const MeshArrays   mesh = Tile(MakeStack(slices, 2.0), &report);
+  const auto         validation = bone::ValidateMesh(mesh);
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(report.layerBranchings, 4);
+  EXPECT_GT(Volume(mesh, 3), 0.0);
+}
+
+TEST(ContourTilingMeshSource, KeepsAHoleThroughTheBone)
+{
+  const std::vector<Loop> ring = { { { 0, 0 }, 12, 10, 0, 1 }, { { 1, 0 }, 5, 4, 0, 0 } };
+  auto                    stack = MakeStack(std::vector<std::vector<Loop>>(4, ring), 2.0);
+  stack->SetOpenStart(true);
+  stack->SetOpenEnd(true);
+  const MeshArrays mesh = Tile(stack);
+  const auto       validation = bone::ValidateMesh(mesh);
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.boundaryEuler, 0);
+  EXPECT_NEAR(Volume(mesh, 0), 6 * Pi * (120 - 20) * PolygonShare(24), 1e-6);
+}
+
+TEST(ContourTilingMeshSource, IsValidOnRandomStacks)
+{
+  for (unsigned seed = 0; seed < 12; ++seed)
+  {
+    std::mt19937                           engine(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const double                           bow = 0.6 * uniform(engine), twist = 0.1 * uniform(engine);
+    std::vector<std::vector<Loop>>         slices;
+    for (int k = 0; k < 12; ++k)
+    {
+      const Vector2 c(bow * k, 2 * std::sin(twist * k));
+      const double  rx = 10 + 3 * std::sin(0.4 * k + seed), ry = 7 + 2 * std::cos(0.5 * k);
+      slices.push_back({ { c, rx, ry, 0, 1 } });
+      if (k > 1 && k < 10)
+      {
+        slices.back().push_back({ c, rx - 2, ry - 2, 1, 2 });
+      }
+    }
+    const auto validation = bone::ValidateMesh(Tile(MakeStack(slices, 2.0, 16 + static_cast<int>(seed))));
+    EXPECT_TRUE(validation.IsValid()) << "seed " << seed << ": " << validation.Summary();
+    EXPECT_EQ(validation.boundaryEuler, 2) << "seed " << seed;
+  }
+}
+
+TEST(ContourTilingMeshSource, GivesTheSameMeshAgain)
+{
+  auto             stack = MakeStack(std::vector<std::vector<Loop>>(4, Shaft), 2.0);
+  const MeshArrays a = Tile(stack), b = Tile(stack);
+  EXPECT_EQ(a.tetrahedra, b.tetrahedra);
+  EXPECT_EQ(a.points, b.points);
+}
+
+TEST(ContourTilingMeshSource, RunsAgainOnlyWhenSomethingChanged)
+{
+  auto source = Source::New();
+  source->SetInput(MakeStack(std::vector<std::vector<Loop>>(3, Shaft), 2.0));
+  int runs = 0;
+  source->AddObserver(itk::StartEvent(), [&runs](const itk::EventObject &) { ++runs; });
+  source->Update();
+  source->Update();
+  EXPECT_EQ(runs, 1);
+  source->SetMetric("area");
+  source->Update();
+  EXPECT_EQ(runs, 2);
+}
+
+TEST(ContourTilingMeshSource, EveryMetricTilesTheSameBody)
+{
+  auto stack = MakeStack(std::vector<std::vector<Loop>>(4, Shaft), 2.0);
+  stack->SetOpenStart(true);
+  stack->SetOpenEnd(true);
+  for (const char * metric : { "span", "area", "volume", "combined" })
+  {
+    auto source = Source::New();
+    source->SetInput(stack);
+    source->SetMetric(metric);
+    source->Update();
+    EXPECT_NEAR(Volume(source->GetOutput()->GetArrays(), 0), 6 * Pi * 120 * PolygonShare(24), 1e-6) << metric;
+  }
+}
+
+TEST(ContourTilingMeshSource, SaysWhatIsWrong)
+{
+  auto source = Source::New();
+  source->SetInput(MakeStack({ Shaft }, 2.0));
+  EXPECT_THROW(source->Update(), itk::ExceptionObject);
+  source->SetInput(MakeStack(std::vector<std::vector<Loop>>(3, Shaft), 2.0));
+  source->SetMetric("density");
+  EXPECT_THROW(source->Update(), itk::ExceptionObject);
+  source->SetMetric("longest");
+  EXPECT_THROW(source->Update(), itk::ExceptionObject);
+}
