@@ -1,0 +1,64 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneBoneSection_h
+#define boneBoneSection_h
+
+#include "boneContourStack.h"
+#include "bonePlaneField.h"
+
+#include <string>
+
+namespace bone
+{
+/** \brief One piece of bone on a slice: a periosteal loop with what lies in it. Empty polygons: there is none. */
+struct BonePiece
+{
+  Polygon              outer;     ///< counter-clockwise
+  std::vector<Polygon> holes;     ///< clockwise
+  Polygon              endosteal; ///< counter-clockwise, within outer
+  Polygon              medullary; ///< counter-clockwise, within endosteal
+};
+
+/** \brief The pieces of bone on one slice, in plane coordinates (mm). */
+struct BoneSection
+{
+  double                 height{ 0.0 }; ///< along the stack's normal, mm
+  std::vector<BonePiece> pieces;
+};
+
+/** Pieces from contours of a level set: each clockwise contour becomes a hole of the smallest counter-clockwise one
+ * that holds it; contours of less than `minimumArea` (mm^2) are left out and counted in `dropped`. */
+std::vector<BonePiece>
+GroupPieces(std::vector<Polygon> contours, double minimumArea, int & dropped);
+
+/** Whether two simple polygons overlap: they cross, or one lies in the other. */
+bool
+PolygonsOverlap(const Polygon & a, const Polygon & b);
+
+/** \brief Drops what does not last: pieces and holes without an overlapping one on the slices before and after, and
+ * bodies (chains of overlapping pieces) of fewer than `minimumSlices` slices or volumes below `minimumVolume` (mm^3).
+ * Returns one line for each kind of thing dropped. A stack with a single slice that holds bone is left alone. */
+std::vector<std::string>
+DropShortLived(std::vector<BoneSection> & sections, int minimumSlices, double minimumVolume);
+
+/** Candidates for an inner contour, by slice and piece. */
+using LayerCandidates = std::vector<std::vector<std::vector<Polygon>>>;
+
+/** Chooses at most one candidate for the member `inner` of each piece: the one whose chain of overlapping candidates on
+ * neighbouring slices has the largest volume. Chains of the chosen that last fewer than `minimumSlices` slices, or
+ * never reach `smallestArea` (mm^2), are left out. Returns the number of contours left out that way. */
+int
+ChooseLastingLayers(std::vector<BoneSection> & sections,
+                    Polygon BonePiece::*    inner,
+                    const LayerCandidates & candidates,
+                    double                  smallestArea,
+                    int                     minimumSlices);
+
+/** The sections as contours: layers 0, 1, 2 with regions Cortical, Spongy, Medullary; holes have layer 0 and region
+ * Outside. Uses the stack's frame. */
+ContourStack::SliceContainer
+ToSlices(const std::vector<BoneSection> & sections, const ContourStack & frame);
+} // namespace bone
+
+#endif

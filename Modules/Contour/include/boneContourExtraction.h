@@ -1,0 +1,79 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneContourExtraction_h
+#define boneContourExtraction_h
+
+#include "boneBoneLayers.h"
+#include "boneSnake.h"
+
+namespace bone
+{
+/** Parameters of the extraction; lengths in mm, densities in the CT's units (HU). */
+struct ExtractionParameters
+{
+  SnakeParameters snake;
+  LayerParameters layers;
+  double          edgeSmoothing{ 0.0 };   ///< Gaussian on the CT before edges are sought; 0: 0.7 pixel
+  double          minimumSlope{ 40.0 };   ///< of an edge, HU/mm
+  double          minimumArea{ 4.0 };     ///< of a contour
+  double          boneThreshold{ 150.0 }; ///< what never reaches it is no bone
+  double          refineDistance{ 0.0 };  ///< bound on the refinement of a label's outline
+  double          minimumVolume{ 60.0 };  ///< of a body apart from the rest
+};
+
+/** What happened on a slice. */
+struct SliceReport
+{
+  double      height{ 0.0 };     ///< mm along the normal
+  int         iterations{ 0 };   ///< of the snakes, summed over the slice's contours
+  bool        converged{ true }; ///< all of them
+  double      energy{ 0.0 };     ///< internal, summed
+  double      support{ 1.0 };    ///< least share of a contour's points that found an edge
+  std::string events;            ///< "contour ends", "splits", ... ; empty: nothing special
+};
+
+/** What happened on all slices, and what a person should know. */
+struct ExtractionReport
+{
+  std::vector<SliceReport> slices;
+  std::vector<std::string> warnings;
+};
+
+/** Moves the periosteal contours of sections, as they come from a label, to the CT's edges within
+ * `parameters.refineDistance`. A slice where that makes contours cross keeps those it had, and its report says so. */
+void
+RefineSections(std::vector<BoneSection> &   sections,
+               const PlaneSource &          planes,
+               const Vector2 &              pixel,
+               const ExtractionParameters & parameters,
+               const ParallelFor &          parallel,
+               ExtractionReport &           report);
+
+/** \brief Follows contours from slice to slice (paper 2.1).
+ *
+ * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn, and are settled on
+ * the CT first. From each, snakes go on to the slices above and below until they vanish or meet the next drawn slice,
+ * each started from the contours of the slice before. A contour ends where fewer than half of its points find an edge,
+ * or what it holds never reaches the bone threshold. Contours that cross are joined and parted by their union's
+ * outline.
+ */
+void
+PropagateSections(std::vector<BoneSection> &   sections,
+                  const PlaneSource &          planes,
+                  const Vector2 &              pixel,
+                  const ExtractionParameters & parameters,
+                  const ParallelFor &          parallel,
+                  ExtractionReport &           report);
+
+/** Drops what is short-lived, finds the inner layers and removes empty slices at both ends, from the report too. */
+void
+FinishSections(std::vector<BoneSection> &   sections,
+               const PlaneSource &          planes,
+               const Vector2 &              pixel,
+               const ExtractionParameters & parameters,
+               const ParallelFor &          parallel,
+               ExtractionReport &           report);
+} // namespace bone
+
+#endif
