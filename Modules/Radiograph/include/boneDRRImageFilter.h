@@ -17,6 +17,12 @@ enum class DRRMethod : int
   Walk = 1        ///< rays walked from face neighbour to face neighbour (paper 5): slow, in double precision
 };
 
+inline std::ostream &
+operator<<(std::ostream & os, DRRMethod method)
+{
+  return os << (method == DRRMethod::Projection ? "Projection" : "Walk");
+}
+
 /** \class DRRImageFilter
  * \brief Digitally reconstructed radiograph of a tetrahedral density model (paper 5).
  *

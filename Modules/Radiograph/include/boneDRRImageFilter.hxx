@@ -103,7 +103,7 @@ void
 DRRImageFilter<TMesh, TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "Method: " << (m_Method == DRRMethod::Projection ? "Projection" : "Walk") << '\n';
+  os << indent << "Method: " << m_Method << '\n';
   os << indent << "MinimumRegion: " << m_MinimumRegion << '\n';
   os << indent << "MaximumRegion: " << m_MaximumRegion << '\n';
   os << indent << "MeanCellsPassed: " << m_MeanCellsPassed << '\n';

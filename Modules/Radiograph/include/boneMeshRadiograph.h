@@ -21,6 +21,7 @@ struct MeshRadiographOptions
   int    maximumRegion{ std::numeric_limits<int>::max() };
   double scale{ 1.0 };
   double offset{ 0.0 };
+  bool   portable{ false }; ///< ProjectMesh: leave the processor's newer instructions alone
 };
 
 /** \defgroup MeshRadiograph Line integrals through a tetrahedral density model (paper 5)

@@ -42,7 +42,7 @@ public:
     , m_Options(options)
     , m_Density(cells, options)
     , m_Frame(RayFrame::Displaced(view))
-    , m_AddCell(projection::SelectAddCell())
+    , m_AddCell(options.portable ? projection::AddCellPortable : projection::SelectAddCell())
   {}
 
   void
@@ -219,7 +219,7 @@ ColumnsOfRow(const CellLines & lines, double detectorDepth, int row, int columns
       }
     }
   }
-  run.first = std::ceil(std::max(0.0, run.first - margin));
+  run.first = std::ceil(std::clamp(run.first - margin, 0.0, static_cast<double>(columns)));
   run.last = std::floor(std::min(columns - 1.0, run.last + margin));
   return run;
 }

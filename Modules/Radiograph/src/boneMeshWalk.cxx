@@ -165,7 +165,8 @@ Walker::CollectEntries(int row, std::vector<Entry> & entries) const
         run.Keep(lines[i].At(0, row) + lines[i].depth * constant, lines[i].column + lines[i].depth * perColumn);
       }
     }
-    for (int column = static_cast<int>(std::ceil(std::max(0.0, run.first))); column <= run.last; ++column)
+    const double first = std::ceil(std::clamp(run.first, 0.0, static_cast<double>(m_Frame.Columns())));
+    for (int column = static_cast<int>(first); column <= run.last; ++column)
     {
       entries.push_back({ column, constant + column * perColumn, entry.cell, entry.face });
     }

@@ -6,6 +6,7 @@
 #include "boneRadiographTestMeshes.h"
 #include "boneRayFrame.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace
@@ -365,6 +366,49 @@ TEST(MeshRadiograph, DoesNotDependOnTheOrderOfWork)
   EXPECT_EQ(image, projected);
   WalkMesh(mesh.points, mesh, view, {}, Sequential(true), image.data(), nullptr);
   EXPECT_EQ(image, walked);
+}
+
+TEST(MeshRadiograph, WalkAndProjectionAgreeFromAnywhere)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, 4, 21);
+  std::mt19937                           random(13);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&]() { return Vector3(uniform(random), uniform(random), uniform(random)); };
+  for (int k = 0; k < 60; ++k)
+  {
+    // Sources near, within and far from the mesh; detectors beyond, across and before it, at any angle.
+    const Vector3            centre(0, 0, 2), beam = vector().normalized();
+    const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.5 * uniform(random), vector().normalized()));
+    View                     view;
+    view.parallel = k % 3 == 0;
+    view.source = centre - (k % 2 == 0 ? 60 : 15) * (1.2 + uniform(random)) * beam;
+    view.direction = beam;
+    view.detectorU = tilt * beam.unitOrthogonal();
+    view.detectorV = tilt * beam.cross(beam.unitOrthogonal());
+    view.size = { { 37, 41 } };
+    view.spacing = { 2.1, 1.7 };
+    view.detectorOrigin = centre + (k % 5 == 0 ? 5 : 50) * beam - 38 * view.detectorU - 35 * view.detectorV;
+    const auto   projected = Project(mesh, view), walked = Walk(mesh, view);
+    const double largest = std::max(Largest(walked), 1.0);
+    for (std::size_t i = 0; i < walked.size(); ++i)
+    {
+      ASSERT_NEAR(projected[i], walked[i], 1e-5 * largest) << "view " << k << ", pixel " << i;
+    }
+  }
+}
+
+TEST(MeshRadiograph, TheProcessorsNewerInstructionsChangeRoundingOnly)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, MaximumBernsteinDegree, 9);
+  MeshRadiographOptions portable;
+  portable.portable = true;
+  for (bool parallel : { false, true })
+  {
+    const View view = Oblique(parallel);
+    EXPECT_LT(Difference(Project(mesh, view, portable), Project(mesh, view)), 5e-6) << parallel;
+  }
 }
 
 TEST(MeshRadiograph, SliversSeenEdgeOnKeepTheirAccuracy)
