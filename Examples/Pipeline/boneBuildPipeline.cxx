@@ -1,0 +1,83 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneBuildPipeline.h"
+
+namespace bone
+{
+BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
+{
+  m_Resample->SetInput(m_Snake->GetOutput());
+  m_MedialAxis->SetInput(m_Resample->GetOutput());
+  m_Tiling->SetInput(m_MedialAxis->GetOutput());
+  m_Quality->SetInput(m_Tiling->GetOutput());
+  m_Fit->SetMesh(m_Quality->GetOutput());
+  m_Collapse->SetInput(m_Fit->GetOutput());
+  for (std::size_t level = 0; level < numberOfLevels; ++level)
+  {
+    m_Levels.push_back(HierarchyLevelFilter::New());
+    m_Levels.back()->SetInput(m_Collapse->GetOutput());
+    m_Levels.back()->SetLevel(level);
+    m_Radiographs.push_back(RadiographType::New());
+    m_Radiographs.back()->SetInput(m_Levels.back()->GetOutput());
+  }
+}
+
+void
+BuildPipeline::SetImage(const CTImage * image)
+{
+  m_Snake->SetInput(image);
+  m_Tiling->SetDensityImage(image);
+  m_Fit->SetImage(image);
+}
+
+void
+BuildPipeline::SetLabelImage(const LabelImage * labels)
+{
+  m_Snake->SetLabelImage(labels);
+}
+
+void
+BuildPipeline::SetInitialContours(const ContourStack * contours)
+{
+  m_Snake->SetInitialContours(contours);
+}
+
+void
+BuildPipeline::SetGeometry(const XRayGeometry * geometry)
+{
+  for (const auto & radiograph : m_Radiographs)
+  {
+    radiograph->SetGeometry(geometry);
+  }
+}
+
+void
+BuildPipeline::SetContourSpacing(double spacing)
+{
+  m_Resample->SetMaximumSpacing(spacing);
+  m_Resample->SetMinimumSpacing(spacing / 3.0);
+}
+
+std::vector<BuildPipeline::Stage>
+BuildPipeline::GetStages() const
+{
+  std::vector<Stage> stages = { { "contours", m_Snake },   { "resample", m_Resample }, { "medial axis", m_MedialAxis },
+                                { "tiling", m_Tiling },    { "quality", m_Quality },   { "fit", m_Fit },
+                                { "collapse", m_Collapse } };
+  for (std::size_t level = 0; level < m_Radiographs.size(); ++level)
+  {
+    stages.emplace_back("radiograph L" + std::to_string(level + 1), m_Radiographs[level]);
+  }
+  return stages;
+}
+
+void
+BuildPipeline::Update()
+{
+  for (const auto & radiograph : m_Radiographs)
+  {
+    radiograph->Update();
+  }
+}
+} // namespace bone

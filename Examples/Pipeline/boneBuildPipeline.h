@@ -1,0 +1,137 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneBuildPipeline_h
+#define boneBuildPipeline_h
+
+#include "boneHierarchyLevelFilter.h"
+#include "boneImageIO.h"
+
+#include "boneContourResampleFilter.h"
+#include "boneContourTilingMeshSource.h"
+#include "boneDRRImageFilter.h"
+#include "boneDensityFitFilter.h"
+#include "boneMedialAxisFilter.h"
+#include "boneMeshQualityFilter.h"
+#include "boneSnakeContourFilter.h"
+#include "boneTetraCollapseFilter.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bone
+{
+/** \class BuildPipeline
+ * \brief The whole job as one lazy ITK pipeline: from a CT to radiographs of each level of its density model.
+ *
+ * CT, labels or contours -> snake contours -> resampled contours -> medial axes -> tiling -> mesh quality -> density
+ * fit
+ * -> collapse -> one radiograph a level. Parameters are set on the stages; an update runs the stages whose input or
+ * parameters changed and those after them, and no others. */
+class BuildPipeline
+{
+public:
+  using MeshType = DensityMesh<double>;
+  using SnakeType = SnakeContourFilter<CTImage, ContourStack>;
+  using ResampleType = ContourResampleFilter<ContourStack>;
+  using MedialAxisType = MedialAxisFilter<ContourStack>;
+  using TilingType = ContourTilingMeshSource<ContourStack, MeshType>;
+  using QualityType = MeshQualityFilter<MeshType>;
+  using FitType = DensityFitFilter<CTImage, MeshType>;
+  using CollapseType = TetraCollapseFilter<MeshType>;
+  using RadiographType = DRRImageFilter<MeshType, CTImage>;
+
+  /** A stage and its name for people. */
+  using Stage = std::pair<std::string, itk::ProcessObject *>;
+
+  /** \param numberOfLevels  with the first one; their numbers of tetrahedra are set on the collapse. */
+  explicit BuildPipeline(std::size_t numberOfLevels);
+
+  /** \name Inputs
+   * The labels and the contours say where the bone is; one of them is required.
+   * \{ */
+  void
+  SetImage(const CTImage * image);
+  void
+  SetLabelImage(const LabelImage * labels);
+  void
+  SetInitialContours(const ContourStack * contours);
+  void
+  SetGeometry(const XRayGeometry * geometry);
+  /** \} */
+
+  /** Spacing (mm) of the contours' samples on a slice; where they curve they are closer. */
+  void
+  SetContourSpacing(double spacing);
+
+  /** \name Stages
+   * \{ */
+  SnakeType *
+  GetSnake() const
+  {
+    return m_Snake;
+  }
+  ResampleType *
+  GetResample() const
+  {
+    return m_Resample;
+  }
+  MedialAxisType *
+  GetMedialAxis() const
+  {
+    return m_MedialAxis;
+  }
+  TilingType *
+  GetTiling() const
+  {
+    return m_Tiling;
+  }
+  QualityType *
+  GetQuality() const
+  {
+    return m_Quality;
+  }
+  FitType *
+  GetFit() const
+  {
+    return m_Fit;
+  }
+  CollapseType *
+  GetCollapse() const
+  {
+    return m_Collapse;
+  }
+  RadiographType *
+  GetRadiograph(std::size_t level) const
+  {
+    return m_Radiographs.at(level);
+  }
+  std::size_t
+  GetNumberOfLevels() const
+  {
+    return m_Radiographs.size();
+  }
+  /** All of them in order; those that differ by level have the level in their name. */
+  std::vector<Stage>
+  GetStages() const;
+  /** \} */
+
+  /** Brings everything up to date. */
+  void
+  Update();
+
+private:
+  SnakeType::Pointer                         m_Snake{ SnakeType::New() };
+  ResampleType::Pointer                      m_Resample{ ResampleType::New() };
+  MedialAxisType::Pointer                    m_MedialAxis{ MedialAxisType::New() };
+  TilingType::Pointer                        m_Tiling{ TilingType::New() };
+  QualityType::Pointer                       m_Quality{ QualityType::New() };
+  FitType::Pointer                           m_Fit{ FitType::New() };
+  CollapseType::Pointer                      m_Collapse{ CollapseType::New() };
+  std::vector<HierarchyLevelFilter::Pointer> m_Levels;
+  std::vector<RadiographType::Pointer>       m_Radiographs;
+};
+} // namespace bone
+
+#endif

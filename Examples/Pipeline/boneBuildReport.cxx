@@ -1,0 +1,211 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneBuildReport.h"
+
+#include "boneBernstein.h"
+#include "boneMeshValidator.h"
+
+#include <itkMath.h>
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <iomanip>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+constexpr double Degrees = 180.0 / itk::Math::pi;
+
+std::string
+Fixed(double value, int digits)
+{
+  std::ostringstream os;
+  os << std::fixed << std::setprecision(digits) << value;
+  return os.str();
+}
+
+/** One row of the table: a name, and a value for each level. */
+void
+Row(std::ostream &                                          os,
+    const BuildReport &                                     report,
+    const std::string &                                     name,
+    const std::function<std::string(const LevelReport &)> & value)
+{
+  os << std::left << std::setw(34) << name << std::right;
+  for (const LevelReport & level : report.levels)
+  {
+    os << std::setw(14) << value(level);
+  }
+  os << '\n';
+}
+
+std::string
+RegionVolume(const LevelReport & level, int region)
+{
+  const auto found = level.regionVolumes.find(region);
+  return found == level.regionVolumes.end() ? "-" : Fixed(found->second, 0);
+}
+
+void
+WriteSurfaceRows(std::ostream & os, const BuildReport & report)
+{
+  const auto distance = [](const LevelReport & level, bool toMask) {
+    return toMask ? level.distances->meshToMask : level.distances->maskToMesh;
+  };
+  if (report.levels.empty() || !report.levels.front().distances)
+  {
+    return;
+  }
+  Row(os, report, "Dice with the label", [](const LevelReport & l) { return Fixed(*l.dice, 4); });
+  Row(os, report, "mesh to label, mean (mm)", [&](const LevelReport & l) { return Fixed(distance(l, true).mean, 3); });
+  Row(os, report, "mesh to label, 95 % (mm)", [&](const LevelReport & l) {
+    return Fixed(distance(l, true).percentile95, 3);
+  });
+  Row(os, report, "label to mesh, mean (mm)", [&](const LevelReport & l) { return Fixed(distance(l, false).mean, 3); });
+  Row(os, report, "label to mesh, 95 % (mm)", [&](const LevelReport & l) {
+    return Fixed(distance(l, false).percentile95, 3);
+  });
+}
+
+nlohmann::ordered_json
+ToJson(const SurfaceDistance & distance)
+{
+  return { { "mean", distance.mean }, { "percentile95", distance.percentile95 }, { "maximum", distance.maximum } };
+}
+
+nlohmann::ordered_json
+ToJson(const LevelReport & level)
+{
+  nlohmann::ordered_json json = { { "points", level.points },
+                                  { "tetrahedra", level.tetrahedra },
+                                  { "valid", level.valid },
+                                  { "volumeMm3", level.volume } };
+  for (const auto & [region, volume] : level.regionVolumes)
+  {
+    json["regionVolumesMm3"][std::to_string(region)] = volume;
+  }
+  json["meanDensity"] = level.meanDensity;
+  json["dihedralAngleDegrees"] = { { "minimum", level.dihedral.minimum * Degrees },
+                                   { "percentile1", level.dihedral.percentile1 * Degrees },
+                                   { "mean", level.dihedral.mean * Degrees } };
+  if (level.distances)
+  {
+    json["labelDice"] = *level.dice;
+    json["meshToLabelMm"] = ToJson(level.distances->meshToMask);
+    json["labelToMeshMm"] = ToJson(level.distances->maskToMesh);
+  }
+  json["densityError"] = { { "voxels", level.density.voxels },
+                           { "meanAbsolute", level.density.meanAbsolute },
+                           { "bias", level.density.bias },
+                           { "range1To99", level.density.upper - level.density.lower },
+                           { "percentOfRange", level.density.Percent() } };
+  json["radiographDifferencePercent"] = level.radiographPercent;
+  json["toLevel1"] = { { "densityErrorRms", level.densityErrorToLevel1 },
+                       { "surfaceErrorMm", level.surfaceErrorToLevel1 },
+                       { "stopReason", level.stopReason } };
+  return json;
+}
+} // namespace
+
+LevelReport
+DescribeLevel(const MeshArrays & mesh)
+{
+  LevelReport report;
+  report.points = mesh.points.size();
+  report.tetrahedra = mesh.tetrahedra.size();
+  const std::size_t width = mesh.HasDensity() ? static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree)) : 0;
+  double            mass = 0.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 &  c = mesh.tetrahedra[t];
+    const double volume = SignedVolume(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]);
+    report.volume += volume;
+    report.regionVolumes[mesh.region.empty() ? 0 : mesh.region[t]] += volume;
+    if (mesh.HasDensity())
+    {
+      mass += BernsteinIntegral(mesh.degree[t], mesh.coefficients.data() + t * width, volume);
+    }
+  }
+  report.meanDensity = report.volume > 0.0 ? mass / report.volume : 0.0;
+  report.dihedral = SummarizeQuality(mesh, QualityMeasure::MinimumDihedralAngle);
+  const MeshValidation validation = ValidateMesh(mesh);
+  report.valid = validation.IsValid();
+  report.validity = validation.Summary();
+  return report;
+}
+
+std::string
+ToText(const BuildReport & report)
+{
+  std::ostringstream os;
+  os << report.image << ": " << report.slices << " slices " << Fixed(report.resolution.sliceStep, 2)
+     << " mm apart, contour points at most " << Fixed(report.resolution.contourSpacing, 2) << " mm apart, degree "
+     << report.degree << (report.continuous ? ", continuous" : "") << "\n\n";
+  int level = 0;
+  Row(os, report, "", [&level](const LevelReport &) { return "level " + std::to_string(++level); });
+  Row(os, report, "tetrahedra", [](const LevelReport & l) { return std::to_string(l.tetrahedra); });
+  Row(os, report, "points", [](const LevelReport & l) { return std::to_string(l.points); });
+  Row(os, report, "valid", [](const LevelReport & l) { return std::string(l.valid ? "yes" : "NO"); });
+  Row(os, report, "volume (mm^3)", [](const LevelReport & l) { return Fixed(l.volume, 0); });
+  Row(os, report, "  cortical (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Cortical); });
+  Row(os, report, "  spongy (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Spongy); });
+  Row(os, report, "  medullary (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Medullary); });
+  Row(os, report, "dihedral angle, least (deg)", [](const LevelReport & l) {
+    return Fixed(l.dihedral.minimum * Degrees, 1);
+  });
+  Row(os, report, "dihedral angle, mean least (deg)", [](const LevelReport & l) {
+    return Fixed(l.dihedral.mean * Degrees, 1);
+  });
+  WriteSurfaceRows(os, report);
+  Row(os, report, "mean density", [](const LevelReport & l) { return Fixed(l.meanDensity, 1); });
+  Row(os, report, "density error (% of range)", [](const LevelReport & l) { return Fixed(l.density.Percent(), 2); });
+  Row(os, report, "radiograph difference (%)", [](const LevelReport & l) { return Fixed(l.radiographPercent, 2); });
+  os << "\nseconds:";
+  double total = 0.0;
+  for (const auto & [name, seconds] : report.times)
+  {
+    os << ' ' << name << ' ' << Fixed(seconds, 1) << ',';
+    total += seconds;
+  }
+  os << " all " << Fixed(total, 1) << '\n';
+  return os.str();
+}
+
+std::string
+ToJson(const BuildReport & report)
+{
+  nlohmann::ordered_json json;
+  json["version"] = report.version;
+  json["input"] = { { "image", report.image } };
+  if (!report.labels.empty())
+  {
+    json["input"]["labels"] = report.labels;
+    json["input"]["label"] = report.label;
+  }
+  if (!report.initialContours.empty())
+  {
+    json["input"]["initialContours"] = report.initialContours;
+  }
+  json["parameters"] = { { "tetrahedra", report.askedTetrahedra },
+                         { "sliceStepMm", report.resolution.sliceStep },
+                         { "contourSpacingMm", report.resolution.contourSpacing },
+                         { "degree", report.degree },
+                         { "continuous", report.continuous } };
+  json["slices"] = report.slices;
+  json["levels"] = nlohmann::ordered_json::array();
+  for (const LevelReport & level : report.levels)
+  {
+    json["levels"].push_back(ToJson(level));
+  }
+  json["warnings"] = report.warnings;
+  for (const auto & [name, seconds] : report.times)
+  {
+    json["seconds"][name] = seconds;
+  }
+  return json.dump(2) + "\n";
+}
+} // namespace bone

@@ -1,0 +1,72 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneBuildReport_h
+#define boneBuildReport_h
+
+#include "boneMeshImageMetrics.h"
+#include "boneQualityMeasures.h"
+#include "boneResolution.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bone
+{
+/** What is to be known of one level of a built model. */
+struct LevelReport
+{
+  std::size_t           points{ 0 };
+  std::size_t           tetrahedra{ 0 };
+  double                volume{ 0.0 }; ///< mm^3
+  std::map<int, double> regionVolumes; ///< mm^3 by region
+  double                meanDensity{ 0.0 };
+  QualitySummary        dihedral; ///< smallest dihedral angle of each tetrahedron, rad
+  bool                  valid{ false };
+  std::string           validity;                    ///< "valid", or the first failed check
+  double                densityErrorToLevel1{ 0.0 }; ///< root mean square, density units
+  double                surfaceErrorToLevel1{ 0.0 }; ///< mm
+  std::string           stopReason;
+
+  std::optional<double>           dice;      ///< with a label map only
+  std::optional<SurfaceDistances> distances; ///< with a label map only
+  DensityError                    density;
+  double                          radiographPercent{ 0.0 };
+};
+
+/** What is to be known of a build. */
+struct BuildReport
+{
+  std::string              version;
+  std::string              image;
+  std::string              labels;
+  int                      label{ 0 };
+  std::string              initialContours;
+  int                      degree{ 0 };
+  bool                     continuous{ false };
+  IdType                   askedTetrahedra{ 0 };
+  Resolution               resolution;
+  std::size_t              slices{ 0 };
+  std::vector<LevelReport> levels;
+  std::vector<std::string> warnings;
+  /** Seconds by step, in order. */
+  std::vector<std::pair<std::string, double>> times;
+};
+
+/** Counts, volumes, validity and quality of a level's mesh; the rest is left to the caller. */
+LevelReport
+DescribeLevel(const MeshArrays & mesh);
+
+/** The report as a table. */
+std::string
+ToText(const BuildReport & report);
+
+/** The report as JSON. */
+std::string
+ToJson(const BuildReport & report);
+} // namespace bone
+
+#endif

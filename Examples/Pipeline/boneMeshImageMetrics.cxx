@@ -1,0 +1,207 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshImageMetrics.h"
+
+#include "boneTriangleTree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bone
+{
+namespace
+{
+/** Value below which a share of the values lies; reorders them. */
+double
+Percentile(std::vector<double> & values, double share)
+{
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+SurfaceDistance
+Summarize(std::vector<double> & distances)
+{
+  SurfaceDistance summary;
+  for (const double d : distances)
+  {
+    summary.mean += d / static_cast<double>(distances.size());
+    summary.maximum = std::max(summary.maximum, d);
+  }
+  summary.percentile95 = Percentile(distances, 0.95);
+  return summary;
+}
+
+/** Points on a triangle about `step` apart, its corners among them. */
+void
+SampleTriangle(const TriangleTree::Triangle & t, double step, std::vector<Vector3> & points)
+{
+  const double longest = std::max({ (t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm() });
+  const int    n = std::clamp(static_cast<int>(std::ceil(longest / step)), 1, 24);
+  for (int i = 0; i <= n; ++i)
+  {
+    for (int j = 0; j <= n - i; ++j)
+    {
+      points.push_back((t[0] * i + t[1] * j + t[2] * (n - i - j)) / n);
+    }
+  }
+}
+
+/** The faces between voxels inside and outside the mask: two triangles each, and the faces' centres. */
+void
+MaskSurface(const LabelImage * mask, std::vector<TriangleTree::Triangle> & triangles, std::vector<Vector3> & centres)
+{
+  const auto    region = mask->GetLargestPossibleRegion();
+  const auto    size = region.GetSize();
+  const short * buffer = mask->GetBufferPointer();
+  const long    n[3] = { static_cast<long>(size[0]), static_cast<long>(size[1]), static_cast<long>(size[2]) };
+  const auto    inside = [&](const std::array<long, 3> & i) {
+    return i[0] >= 0 && i[1] >= 0 && i[2] >= 0 && i[0] < n[0] && i[1] < n[1] && i[2] < n[2] &&
+           buffer[(i[2] * n[1] + i[1]) * n[0] + i[0]] != 0;
+  };
+  const auto toSpace = [&](const Vector3 & index) {
+    itk::ContinuousIndex<double, 3> c;
+    for (unsigned int d = 0; d < 3; ++d)
+    {
+      c[d] = index[d] + static_cast<double>(region.GetIndex(d));
+    }
+    LabelImage::PointType p;
+    mask->TransformContinuousIndexToPhysicalPoint(c, p);
+    return Vector3(p[0], p[1], p[2]);
+  };
+  std::array<long, 3> i{};
+  for (i[2] = -1; i[2] < n[2]; ++i[2])
+  {
+    for (i[1] = -1; i[1] < n[1]; ++i[1])
+    {
+      for (i[0] = -1; i[0] < n[0]; ++i[0])
+      {
+        for (int d = 0; d < 3; ++d)
+        {
+          std::array<long, 3> next = i;
+          ++next[d];
+          if (inside(i) == inside(next))
+          {
+            continue;
+          }
+          const Vector3 centre = Vector3(double(i[0]), double(i[1]), double(i[2])) + 0.5 * Vector3::Unit(d);
+          const Vector3 u = 0.5 * Vector3::Unit((d + 1) % 3);
+          const Vector3 v = 0.5 * Vector3::Unit((d + 2) % 3);
+          const Vector3 a = toSpace(centre - u - v);
+          const Vector3 b = toSpace(centre + u - v);
+          const Vector3 c = toSpace(centre + u + v);
+          const Vector3 e = toSpace(centre - u + v);
+          triangles.push_back({ { a, b, c } });
+          triangles.push_back({ { a, c, e } });
+          centres.push_back(toSpace(centre));
+        }
+      }
+    }
+  }
+}
+
+SurfaceDistance
+DistanceToTree(const std::vector<Vector3> & points, const TriangleTree & tree)
+{
+  std::vector<double> distances(points.size());
+  std::transform(points.begin(), points.end(), distances.begin(), [&tree](const Vector3 & p) {
+    return std::sqrt(tree.FindNearest(p).squaredDistance);
+  });
+  return Summarize(distances);
+}
+} // namespace
+
+double
+DiceOverlap(const CTImage * model, const LabelImage * mask)
+{
+  const std::size_t count = mask->GetLargestPossibleRegion().GetNumberOfPixels();
+  const float *     m = model->GetBufferPointer();
+  const short *     l = mask->GetBufferPointer();
+  std::size_t       both = 0;
+  std::size_t       sum = 0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const bool inModel = !std::isnan(m[k]);
+    const bool inMask = l[k] != 0;
+    both += inModel && inMask ? 1 : 0;
+    sum += (inModel ? 1 : 0) + (inMask ? 1 : 0);
+  }
+  return sum == 0 ? 0.0 : 2.0 * static_cast<double>(both) / static_cast<double>(sum);
+}
+
+SurfaceDistances
+MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask)
+{
+  std::vector<TriangleTree::Triangle> boundary;
+  std::vector<Vector3>                samples;
+  for (const auto & face : BoundaryFaces(mesh))
+  {
+    boundary.push_back({ { mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] } });
+    SampleTriangle(boundary.back(), 0.5, samples);
+  }
+  std::vector<TriangleTree::Triangle> faces;
+  std::vector<Vector3>                centres;
+  MaskSurface(mask, faces, centres);
+  SurfaceDistances distances;
+  distances.meshToMask = DistanceToTree(samples, TriangleTree(std::move(faces)));
+  distances.maskToMesh = DistanceToTree(centres, TriangleTree(std::move(boundary)));
+  return distances;
+}
+
+DensityError
+MeasureDensityError(const CTImage * ct, const CTImage * model, const LabelImage * mask)
+{
+  const std::size_t   count = ct->GetLargestPossibleRegion().GetNumberOfPixels();
+  const float *       c = ct->GetBufferPointer();
+  const float *       m = model->GetBufferPointer();
+  const short *       l = mask == nullptr ? nullptr : mask->GetBufferPointer();
+  DensityError        error;
+  std::vector<double> truth;
+  double              absolute = 0.0;
+  double              bias = 0.0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    if (!std::isnan(m[k]) && (l == nullptr || l[k] != 0))
+    {
+      truth.push_back(c[k]);
+      absolute += std::abs(m[k] - c[k]);
+      bias += m[k] - c[k];
+    }
+  }
+  error.voxels = truth.size();
+  if (!truth.empty())
+  {
+    error.meanAbsolute = absolute / static_cast<double>(truth.size());
+    error.bias = bias / static_cast<double>(truth.size());
+    error.lower = Percentile(truth, 0.01);
+    error.upper = Percentile(truth, 0.99);
+  }
+  return error;
+}
+
+double
+RadiographDifferencePercent(const CTImage * reference, const CTImage * radiograph)
+{
+  const std::size_t   count = reference->GetLargestPossibleRegion().GetNumberOfPixels();
+  const float *       a = reference->GetBufferPointer();
+  const float *       b = radiograph->GetBufferPointer();
+  std::vector<double> values;
+  double              sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    if (a[k] != 0.0F)
+    {
+      values.push_back(a[k]);
+      sum += std::abs(b[k] - a[k]);
+    }
+  }
+  const double range = Percentile(values, 0.99) - Percentile(values, 0.01);
+  return range > 0.0 ? 100.0 * sum / static_cast<double>(values.size()) / range : 0.0;
+}
+} // namespace bone

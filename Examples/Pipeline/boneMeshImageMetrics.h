@@ -1,0 +1,68 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshImageMetrics_h
+#define boneMeshImageMetrics_h
+
+#include "boneImageIO.h"
+#include "boneMeshArrays.h"
+
+namespace bone
+{
+/** \defgroup MeshImageMetrics How well a mesh agrees with the image it was made from
+ * A mask is 1 in the bone and 0 elsewhere. A model image holds the model's density at each voxel's centre of the CT and
+ * NaN outside the model.
+ * \{ */
+
+/** Dice overlap of the voxels in the model with those of the mask. */
+double
+DiceOverlap(const CTImage * model, const LabelImage * mask);
+
+/** Distances in mm. */
+struct SurfaceDistance
+{
+  double mean{ 0.0 };
+  double percentile95{ 0.0 };
+  double maximum{ 0.0 };
+};
+
+/** Distances between the mesh's boundary and the surface of the mask, which is that of its voxels' faces; faces at the
+ * image's border count. The mesh's boundary is sampled about every 0.5 mm, the mask's at its faces' centres. */
+struct SurfaceDistances
+{
+  SurfaceDistance meshToMask;
+  SurfaceDistance maskToMesh;
+};
+
+SurfaceDistances
+MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask);
+
+/** Density of the model against that of the CT, over the voxels that lie in the model and in the mask (null: all in the
+ * model). */
+struct DensityError
+{
+  std::size_t voxels{ 0 };
+  double      meanAbsolute{ 0.0 }; ///< units of the CT
+  double      bias{ 0.0 };         ///< mean of model - CT
+  double      lower{ 0.0 };        ///< 1st percentile of the CT
+  double      upper{ 0.0 };        ///< 99th percentile of the CT
+
+  /** Mean absolute error in percent of the range between the percentiles. */
+  double
+  Percent() const
+  {
+    return upper > lower ? 100.0 * meanAbsolute / (upper - lower) : 0.0;
+  }
+};
+
+DensityError
+MeasureDensityError(const CTImage * ct, const CTImage * model, const LabelImage * mask);
+
+/** Mean absolute difference of two radiographs of one geometry over the pixels where the reference is not 0, in percent
+ * of the reference's 1..99 % range there. */
+double
+RadiographDifferencePercent(const CTImage * reference, const CTImage * radiograph);
+/** \} */
+} // namespace bone
+
+#endif

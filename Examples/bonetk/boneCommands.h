@@ -1,0 +1,44 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneCommands_h
+#define boneCommands_h
+
+#include "boneSession.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace bone
+{
+/** What a command does once its options are parsed. */
+using Action = std::function<void(Session &)>;
+
+/** \defgroup Commands The commands of bonetk
+ * Each adds a subcommand with its options; parsing it sets `action`.
+ * \{ */
+void
+AddPhantomCommand(CLI::App & app, Action & action);
+void
+AddContoursCommand(CLI::App & app, Action & action);
+void
+AddMeshCommand(CLI::App & app, Action & action);
+void
+AddSmoothCommand(CLI::App & app, Action & action);
+void
+AddFitCommand(CLI::App & app, Action & action);
+void
+AddSimplifyCommand(CLI::App & app, Action & action);
+void
+AddBuildCommand(CLI::App & app, Action & action);
+void
+AddDrrCommand(CLI::App & app, Action & action);
+void
+AddValidateCommand(CLI::App & app, Action & action);
+void
+AddInfoCommand(CLI::App & app, Action & action);
+/** \} */
+} // namespace bone
+
+#endif

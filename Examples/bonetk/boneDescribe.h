@@ -1,0 +1,33 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDescribe_h
+#define boneDescribe_h
+
+#include "boneContourStack.h"
+#include "boneDensityHierarchy.h"
+#include "boneImageIO.h"
+#include "boneXRayGeometry.h"
+
+#include <string>
+
+namespace bone
+{
+/** \defgroup Describe What is in a data object, as lines of text
+ * \{ */
+std::string
+DescribeQuality(const MeshArrays & mesh);
+std::string
+DescribeMesh(const MeshArrays & mesh);
+std::string
+DescribeContours(const ContourStack & stack);
+std::string
+DescribeHierarchy(const DensityHierarchy<> & hierarchy);
+std::string
+DescribeView(const XRayGeometry & geometry);
+std::string
+DescribeImage(const CTImage & image);
+/** \} */
+} // namespace bone
+
+#endif

@@ -1,0 +1,94 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneOptions.h"
+
+#include "boneDRRImageFilter.h"
+#include "boneGeometryIO.h"
+#include "boneMeshIO.h"
+#include "boneVoxelDRRImageFilter.h"
+
+namespace bone
+{
+namespace
+{
+struct Options
+{
+  std::string input;
+  std::string geometry;
+  std::string mask;
+  bool        attenuation{ false };
+  std::string output;
+};
+
+using Radiograph = CTImage;
+
+itk::SmartPointer<RadiographSource<Radiograph>>
+MakeSource(const Options & options)
+{
+  const std::string extension = ".vtu";
+  const std::size_t length = options.input.size();
+  if (length > extension.size() && options.input.compare(length - extension.size(), extension.size(), extension) == 0)
+  {
+    if (!options.mask.empty())
+    {
+      throw UsageError("--mask goes with a voxel image only");
+    }
+    auto filter = DRRImageFilter<DensityMesh<double>, Radiograph>::New();
+    filter->SetInput(ReadDensityMesh(options.input));
+    return filter.GetPointer();
+  }
+  auto filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
+  filter->SetInput(ReadCT(options.input));
+  if (!options.mask.empty())
+  {
+    filter->SetMask(ReadLabels(options.mask));
+  }
+  return filter.GetPointer();
+}
+
+/** Output of view `index` of `count`: NAME.mha, or NAME_V1.mha, NAME_V2.mha, ... */
+std::string
+ViewPath(const std::string & path, std::size_t index, std::size_t count)
+{
+  if (count == 1)
+  {
+    return path;
+  }
+  const std::size_t slash = path.find_last_of('/');
+  const std::size_t start = slash == std::string::npos ? 0 : slash + 1;
+  const std::size_t dot = std::min(path.find('.', start + 1), path.size());
+  return path.substr(0, dot) + "_V" + std::to_string(index + 1) + path.substr(dot);
+}
+
+void
+Run(const Options & options, Session & session)
+{
+  const auto views = ReadGeometry(options.geometry);
+  auto       source = MakeSource(options);
+  source->SetHUToAttenuation(options.attenuation ? HUToAttenuation::WaterScaled : HUToAttenuation::None);
+  session.Watch(source, "drr");
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    source->SetGeometry(views[i]);
+    source->Update();
+    WriteImage(source->GetOutput(), ViewPath(options.output, i, views.size()));
+  }
+}
+} // namespace
+
+void
+AddDrrCommand(CLI::App & app, Action & action)
+{
+  auto   options = std::make_shared<Options>();
+  auto * command = app.add_subcommand("drr", "Digitally reconstructed radiograph of a density mesh or a voxel image");
+  command->add_option("input", options->input, "Density mesh (.vtu), or a CT")->required();
+  command->add_option("--geometry", options->geometry, "Views (.json); several write NAME_V1, NAME_V2, ...")
+    ->required();
+  command->add_option("--mask", options->mask, "Label map on the CT's grid: only voxels that are not 0 count");
+  command->add_flag("--attenuation", options->attenuation, "Turn HU into attenuation of water at 60 keV first");
+  command->add_option("-o,--output", options->output, "Radiograph to write (.mha, .nii.gz, .nrrd, ...)")->required();
+  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+}
+} // namespace bone

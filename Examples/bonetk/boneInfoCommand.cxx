@@ -1,0 +1,123 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneDescribe.h"
+
+#include "boneContourIO.h"
+#include "boneGeometryIO.h"
+#include "boneHierarchyIO.h"
+#include "boneIOError.h"
+#include "boneMeshIO.h"
+
+#include <filesystem>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+bool
+EndsIn(const std::string & path, const std::string & extension)
+{
+  return path.size() >= extension.size() &&
+         path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
+}
+
+std::string
+DescribeSurface(const TriangleSurface & surface)
+{
+  double volume = 0.0;
+  for (const auto & triangle : surface.triangles)
+  {
+    const Vector3 & a = surface.points[triangle[0]];
+    volume += a.dot(surface.points[triangle[1]].cross(surface.points[triangle[2]])) / 6.0;
+  }
+  std::ostringstream os;
+  os << "kind                        closed surface\npoints                      " << surface.points.size()
+     << "\ntriangles                   " << surface.triangles.size() << "\nvolume (mm^3)               " << volume
+     << '\n';
+  return os.str();
+}
+
+/** A .vtp holds contours or a surface: what cannot be read as the one may be the other. */
+std::string
+DescribePolyData(const std::string & path)
+{
+  try
+  {
+    return DescribeContours(*ReadContours(path));
+  }
+  catch (const IOError & contours)
+  {
+    try
+    {
+      return DescribeSurface(ReadTriangleSurface(path));
+    }
+    catch (const IOError &)
+    {
+      throw contours;
+    }
+  }
+}
+
+std::string
+Describe(const std::string & path)
+{
+  if (EndsIn(path, ".vtu"))
+  {
+    return DescribeMesh(ReadMeshArrays(path));
+  }
+  if (EndsIn(path, ".hierarchy.json"))
+  {
+    return DescribeHierarchy(*ReadHierarchy(path));
+  }
+  if (EndsIn(path, ".mrk.json"))
+  {
+    return DescribeContours(*ReadContours(path));
+  }
+  if (EndsIn(path, ".json"))
+  {
+    std::string text;
+    for (const auto & view : ReadGeometry(path))
+    {
+      text += DescribeView(*view);
+    }
+    return text;
+  }
+  if (EndsIn(path, ".vtp"))
+  {
+    return DescribePolyData(path);
+  }
+  if (EndsIn(path, ".ply") || EndsIn(path, ".stl"))
+  {
+    return DescribeSurface(ReadTriangleSurface(path));
+  }
+  try
+  {
+    return DescribeImage(*ReadCT(path));
+  }
+  catch (const IOError & volume)
+  {
+    // A radiograph is an image of one slice, which is no CT.
+    try
+    {
+      return DescribeImage(*ReadRadiograph(path));
+    }
+    catch (const IOError &)
+    {
+      throw volume;
+    }
+  }
+}
+} // namespace
+
+void
+AddInfoCommand(CLI::App & app, Action & action)
+{
+  auto   path = std::make_shared<std::string>();
+  auto * command = app.add_subcommand("info", "Say what is in a file, or in a folder with a DICOM series");
+  command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, surface or image")->required();
+  command->callback([path, &action] { action = [path](Session & session) { session.Print(Describe(*path)); }; });
+}
+} // namespace bone

@@ -1,0 +1,61 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneOptions.h"
+
+#include "boneContourIO.h"
+#include "boneContourTilingMeshSource.h"
+#include "boneMeshIO.h"
+
+namespace bone
+{
+namespace
+{
+struct Options
+{
+  std::string contours;
+  std::string ct;
+  std::string metric{ "combined" };
+  std::string output;
+};
+
+void
+Run(const Options & options, Session & session)
+{
+  VerifyExtension(options.output, { ".vtu" });
+  if (options.ct.empty() && options.metric == "density")
+  {
+    throw UsageError("--metric density needs --ct");
+  }
+  auto tiling = ContourTilingMeshSource<ContourStack, DensityMesh<double>>::New();
+  tiling->SetInput(ReadContours(options.contours));
+  tiling->SetMetric(options.metric);
+  if (!options.ct.empty())
+  {
+    tiling->SetDensityImage(ReadCT(options.ct));
+  }
+  else if (options.metric == "combined")
+  {
+    session.Print("no --ct: the combined metric is span length alone\n");
+  }
+  session.Watch(tiling, "tiling");
+  tiling->Update();
+  WriteDensityMesh(tiling->GetOutput(), options.output);
+}
+} // namespace
+
+void
+AddMeshCommand(CLI::App & app, Action & action)
+{
+  auto   options = std::make_shared<Options>();
+  auto * command = app.add_subcommand("mesh", "Tile contours into a layered tetrahedral mesh");
+  command->add_option("contours", options->contours, "Contours (.vtp)")->required();
+  command->add_option("--ct", options->ct, "CT whose density the metric follows");
+  command->add_option("--metric", options->metric, "What the tiling minimises (volume: maximises); default combined")
+    ->check(CLI::IsMember({ "span", "area", "volume", "density", "combined" }).description(""))
+    ->type_name("span|area|volume|density|combined");
+  command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
+  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+}
+} // namespace bone

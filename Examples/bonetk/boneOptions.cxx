@@ -1,0 +1,112 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneOptions.h"
+
+#include "boneContourIO.h"
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+template <typename TPredicate>
+CLI::Validator
+NumberWhere(TPredicate predicate, const std::string & description)
+{
+  return CLI::Validator(
+    [predicate, description](std::string & text) {
+      double value = std::nan("");
+      if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value) || !predicate(value))
+      {
+        return text + " is not " + description;
+      }
+      return std::string();
+    },
+    std::string());
+}
+} // namespace
+
+CLI::Validator
+Positive()
+{
+  return NumberWhere([](double x) { return x > 0.0; }, "a number above 0");
+}
+
+CLI::Validator
+NotNegative()
+{
+  return NumberWhere([](double x) { return x >= 0.0; }, "a number of at least 0");
+}
+
+CLI::Validator
+Between(double lower, double upper)
+{
+  std::ostringstream text;
+  text << "a number from " << lower << " to " << upper;
+  return NumberWhere([lower, upper](double x) { return x >= lower && x <= upper; }, text.str());
+}
+
+void
+BoneOptions::AddTo(CLI::App * command)
+{
+  auto * labelsOption = command->add_option("--labels", labels, "Label map on the CT's grid: where the bone is");
+  command->add_option("--label", label, "The bone's value in the label map; default: every value but 0")
+    ->needs(labelsOption)
+    ->check(Between(-32768, 32767));
+  command->add_option("--init", init, "Initial contours (.vtp, or .mrk.json of 3D Slicer); may be given with --labels");
+}
+
+void
+BoneOptions::Verify() const
+{
+  if (labels.empty() && init.empty())
+  {
+    throw UsageError("--labels or --init is required: they say where the bone is");
+  }
+}
+
+BoneInput
+ReadBone(const BoneOptions & options)
+{
+  BoneInput input;
+  if (!options.labels.empty())
+  {
+    input.labels = ReadLabels(options.labels);
+  }
+  if (!options.init.empty())
+  {
+    input.contours = ReadContours(options.init);
+  }
+  return input;
+}
+
+void
+AddAxisOption(CLI::App * command, int & axis)
+{
+  const std::map<std::string, int> axes = { { "x", 0 }, { "y", 1 }, { "z", 2 } };
+  command->add_option("--axis", axis, "Image axis that the slices are stacked along: x, y or z (default)")
+    ->transform(CLI::Transformer(axes, CLI::ignore_case).description(""))
+    ->check(CLI::IsMember({ 0, 1, 2 }).description(""))
+    ->type_name("x|y|z");
+}
+
+void
+VerifyExtension(const std::string & path, const std::vector<std::string> & extensions)
+{
+  std::string list;
+  for (const std::string & extension : extensions)
+  {
+    if (path.size() > extension.size() &&
+        path.compare(path.size() - extension.size(), extension.size(), extension) == 0)
+    {
+      return;
+    }
+    list += (list.empty() ? "" : ", ") + extension;
+  }
+  throw UsageError("the output " + path + " must end in " + list);
+}
+} // namespace bone

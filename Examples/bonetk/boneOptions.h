@@ -1,0 +1,62 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneOptions_h
+#define boneOptions_h
+
+#include "boneContourStack.h"
+#include "boneImageIO.h"
+#include "boneSession.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace bone
+{
+/** \name Validators for numbers; NaN and infinity are refused.
+ * \{ */
+CLI::Validator
+Positive();
+CLI::Validator
+NotNegative();
+/** lower <= x <= upper */
+CLI::Validator
+Between(double lower, double upper);
+/** \} */
+
+/** Where the bone is: a label map, initial contours, or both. */
+struct BoneOptions
+{
+  std::string labels;
+  int         label{ 0 };
+  std::string init;
+
+  /** Adds --labels, --label and --init. */
+  void
+  AddTo(CLI::App * command);
+  /** Throws UsageError where neither labels nor contours were given. */
+  void
+  Verify() const;
+};
+
+/** What BoneOptions name, read; null where not given. */
+struct BoneInput
+{
+  LabelImage::Pointer   labels;
+  ContourStack::Pointer contours;
+};
+
+BoneInput
+ReadBone(const BoneOptions & options);
+
+/** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
+void
+AddAxisOption(CLI::App * command, int & axis);
+
+/** The name must end in one of the extensions; throws UsageError. */
+void
+VerifyExtension(const std::string & path, const std::vector<std::string> & extensions);
+} // namespace bone
+
+#endif

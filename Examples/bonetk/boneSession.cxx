@@ -1,0 +1,147 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSession.h"
+
+#include "boneIOError.h"
+
+#include <itkCommand.h>
+#include <itkOutputWindow.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <regex>
+
+#include <unistd.h>
+
+namespace bone
+{
+namespace
+{
+/** Turns what ITK's filters warn of, several lines with addresses and places in the source, into lines of the session.
+ */
+class SessionWindow : public itk::OutputWindow
+{
+public:
+  using Self = SessionWindow;
+  using Superclass = itk::OutputWindow;
+  using Pointer = itk::SmartPointer<Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(SessionWindow, itk::OutputWindow);
+
+  void
+  SetSession(Session * session)
+  {
+    m_Session = session;
+  }
+  void
+  DisplayText(const char * text) override
+  {
+    static const std::regex header(R"(^\s*(WARNING|ERROR|Debug): In [^\n]*\n)");
+    static const std::regex object(R"(^\w+ ?\((0x)?[0-9a-f]+\): )");
+    static const std::regex space(R"(\s+)");
+    std::string             line = std::regex_replace(std::string(text), header, "");
+    line = std::regex_replace(line, object, "");
+    line = std::regex_replace(line, space, " ");
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (m_Session != nullptr && !line.empty())
+    {
+      m_Session->Warn(line);
+    }
+  }
+
+private:
+  Session * m_Session{ nullptr };
+};
+} // namespace
+
+Session::Session()
+  : m_Start(std::chrono::steady_clock::now())
+  , m_Terminal(isatty(STDERR_FILENO) == 1)
+{
+  auto window = SessionWindow::New();
+  window->SetSession(this);
+  itk::OutputWindow::SetInstance(window);
+}
+
+Session::~Session()
+{
+  this->ClearProgress();
+  itk::OutputWindow::SetInstance(nullptr);
+}
+
+void
+Session::Print(const std::string & text)
+{
+  if (!quiet)
+  {
+    this->ClearProgress();
+    std::cout << text << std::flush;
+  }
+}
+
+void
+Session::Warn(const std::string & message)
+{
+  const std::lock_guard<std::mutex> lock(m_Mutex);
+  if (std::find(m_Warnings.begin(), m_Warnings.end(), message) != m_Warnings.end())
+  {
+    return;
+  }
+  m_Warnings.push_back(message);
+  if (!quiet)
+  {
+    this->ClearProgress();
+    std::cerr << "bonetk " << command << ": warning: " << message << std::endl;
+  }
+}
+
+void
+Session::Fail(const std::string & message)
+{
+  this->ClearProgress();
+  std::string line = message;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::cerr << "bonetk" << (command.empty() ? "" : " " + command) << ": " << line << std::endl;
+}
+
+void
+Session::Watch(itk::ProcessObject * filter, const std::string & name)
+{
+  if (quiet || !m_Terminal)
+  {
+    return;
+  }
+  filter->AddObserver(itk::ProgressEvent(),
+                      [this, filter, name](const itk::EventObject &) { ShowProgress(name, filter->GetProgress()); });
+  filter->AddObserver(itk::EndEvent(), [this](const itk::EventObject &) { this->ClearProgress(); });
+}
+
+void
+Session::ShowProgress(const std::string & name, double share)
+{
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - m_Start;
+  if (elapsed.count() < 1.0)
+  {
+    return;
+  }
+  char line[80];
+  std::snprintf(line, sizeof line, "%-24.24s %3d %%", name.c_str(), static_cast<int>(100.0 * share + 0.5));
+  if (line != m_Shown)
+  {
+    m_Shown = line;
+    std::cerr << '\r' << line << std::flush;
+  }
+}
+
+void
+Session::ClearProgress()
+{
+  if (!m_Shown.empty())
+  {
+    std::cerr << '\r' << std::string(m_Shown.size(), ' ') << '\r' << std::flush;
+    m_Shown.clear();
+  }
+}
+} // namespace bone

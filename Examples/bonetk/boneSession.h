@@ -1,0 +1,80 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSession_h
+#define boneSession_h
+
+#include <itkProcessObject.h>
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace bone
+{
+/** \class Session
+ * \brief One run of a command: where its text goes, and what it warned of.
+ *
+ * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
+ * errors. Warnings of ITK filters become lines of this session too. */
+class Session
+{
+public:
+  Session();
+  ~Session();
+  Session(const Session &) = delete;
+  Session &
+  operator=(const Session &) = delete;
+
+  /** \name Options that all commands share
+   * \{ */
+  bool quiet{ false };
+  int  threads{ 0 }; ///< 0: all processors
+  /** \} */
+  std::string command;
+
+  /** Text for standard output. */
+  void
+  Print(const std::string & text);
+
+  /** One line on standard error: "bonetk COMMAND: warning: message". Each message once. */
+  void
+  Warn(const std::string & message);
+
+  /** "bonetk COMMAND: message" on standard error, quiet or not. */
+  void
+  Fail(const std::string & message);
+
+  const std::vector<std::string> &
+  GetWarnings() const
+  {
+    return m_Warnings;
+  }
+
+  /** Shows the filter's progress on a terminal while it runs, from the first second of the command on. */
+  void
+  Watch(itk::ProcessObject * filter, const std::string & name);
+
+private:
+  void
+  ShowProgress(const std::string & name, double share);
+  void
+  ClearProgress();
+
+  std::vector<std::string>              m_Warnings;
+  std::mutex                            m_Mutex;
+  std::chrono::steady_clock::time_point m_Start;
+  bool                                  m_Terminal;
+  std::string                           m_Shown;
+};
+
+/** A usage error found after parsing: exit code 2. */
+class UsageError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+} // namespace bone
+
+#endif

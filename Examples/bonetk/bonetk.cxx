@@ -1,0 +1,126 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneIOError.h"
+#include "boneStagingFolder.h"
+
+#include <itkMultiThreaderBase.h>
+
+#include <iostream>
+
+namespace
+{
+enum ExitCode
+{
+  Success = 0,
+  BadData = 1,
+  BadUsage = 2
+};
+
+void
+AddSharedOptions(CLI::App & app, bone::Session & session)
+{
+  for (CLI::App * command : app.get_subcommands([](const CLI::App *) { return true; }))
+  {
+    command->add_flag("-q,--quiet", session.quiet, "Print nothing but errors");
+    command
+      ->add_option("--threads", session.threads, "Number of threads; default: all processors. Does not change results")
+      ->check(CLI::Range(1, 1024).description(""));
+  }
+}
+
+/** Parses the command line. Returns true where there is something to do, else sets the exit code. */
+bool
+Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exitCode)
+{
+  try
+  {
+    app.parse(argc, argv);
+    session.command = app.get_subcommands().front()->get_name();
+    return true;
+  }
+  catch (const CLI::ParseError & error)
+  {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+    {
+      app.exit(error); // prints what --help or --version asked for
+      exitCode = Success;
+      return false;
+    }
+    for (const CLI::App * command : app.get_subcommands())
+    {
+      session.command = command->get_name();
+    }
+    const std::string name = session.command.empty() ? "bonetk" : "bonetk " + session.command;
+    session.Fail(std::string(error.what()) + "; see " + name + " --help");
+    exitCode = BadUsage;
+    return false;
+  }
+}
+
+int
+Run(const bone::Action & action, bone::Session & session)
+{
+  try
+  {
+    action(session);
+    return Success;
+  }
+  catch (const bone::UsageError & error)
+  {
+    session.Fail(std::string(error.what()) + "; see bonetk " + session.command + " --help");
+    return BadUsage;
+  }
+  catch (const itk::ExceptionObject & error)
+  {
+    session.Fail(bone::ErrorLine(error));
+  }
+  catch (const std::bad_alloc &)
+  {
+    session.Fail("not enough memory for this input");
+  }
+  catch (const std::exception & error)
+  {
+    session.Fail(error.what());
+  }
+  return BadData;
+}
+} // namespace
+
+int
+main(int argc, char ** argv)
+{
+  bone::InstallSignalHandling();
+  bone::Session session;
+  bone::Action  action;
+
+  CLI::App app(
+    "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage.",
+    "bonetk");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "bonetk " BONETK_VERSION);
+  bone::AddPhantomCommand(app, action);
+  bone::AddContoursCommand(app, action);
+  bone::AddMeshCommand(app, action);
+  bone::AddSmoothCommand(app, action);
+  bone::AddFitCommand(app, action);
+  bone::AddSimplifyCommand(app, action);
+  bone::AddBuildCommand(app, action);
+  bone::AddDrrCommand(app, action);
+  bone::AddValidateCommand(app, action);
+  bone::AddInfoCommand(app, action);
+  AddSharedOptions(app, session);
+
+  int exitCode = Success;
+  if (!Parse(app, argc, argv, session, exitCode))
+  {
+    return exitCode;
+  }
+  if (session.threads > 0)
+  {
+    itk::MultiThreaderBase::SetGlobalMaximumNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
+    itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
+  }
+  return Run(action, session);
+}

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds a release and turns a CT into a density model with radiographs and a report:
+#
+#   Examples/run.sh                          the analytic femur phantom
+#   Examples/run.sh CT LABELS [LABEL]        a CT with a label map on its grid (LABEL: the bone's value, default any but 0)
+#   Examples/run.sh CT CONTOURS              a CT with initial contours (.vtp, or .mrk.json of 3D Slicer)
+#
+# Results go to the folder out/ of the project. Running it again is quick.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+
+if [ $# -eq 1 ] || [ $# -gt 3 ]; then
+  echo "usage: $0 [CT LABELS [LABEL] | CT CONTOURS]   (a CT alone does not say which bone is meant)" >&2
+  exit 2
+fi
+for file in "${@:1:2}"; do
+  if [ ! -e "$file" ]; then
+    echo "$0: there is no file $file" >&2
+    exit 1
+  fi
+done
+
+"$root/CMake/install-packages.sh"
+(cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release)
+bonetk=$root/build/release/Examples/bonetk/bonetk
+
+mkdir -p "$root/out"
+if [ $# -eq 0 ]; then
+  out=$root/out/femur_phantom
+  ct=$root/out/femur_phantom_ct.nii.gz
+  labels=$root/out/femur_phantom_labels.nii.gz
+  "$bonetk" phantom --bone femur --spacing 0.8 --noise 20 -o "$ct" --labels "$labels"
+  where=(--labels "$labels")
+else
+  ct=$1
+  name=$(basename "$ct")
+  out=$root/out/${name%%.*}
+  case $2 in
+    *.vtp | *.mrk.json) where=(--init "$2") ;;
+    *) where=(--labels "$2") ;;
+  esac
+  [ $# -lt 3 ] || where+=(--label "$3")
+fi
+"$bonetk" build "$ct" "${where[@]}" -o "$out"
+
+echo
+echo "Results in $out:"
+echo "  report.txt, report.json                 counts, errors and times"
+echo "  slices.png                              the CT's slices with the contours"
+echo "  cut_plane.png                           CT, model and difference on a plane, level by level"
+echo "  radiographs.png                         radiographs of the CT and of each level, and their difference"
+echo "  model_L1.vtu, ..., model.hierarchy.json the models (ParaView shows them)"

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds and passes all tests: unit and integration tests of the release build, then the unit
+# tests again under the address and undefined-behaviour sanitizers. Tests that need real data look for it in the folder
+# that BONETK_DATA names, and are skipped where it is not set.
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 1
+CMake/install-packages.sh || exit 1
+
+failed=0
+total=0
+status=0
+
+# run PRESET CTEST-OPTIONS...: builds the preset and runs its tests.
+run() {
+  local preset=$1 log bad all
+  shift
+  log=build/$preset/Testing/ctest.log
+  cmake --preset "$preset" > "build-$preset.log" 2>&1 || { cat "build-$preset.log"; rm -f "build-$preset.log"; exit 1; }
+  rm -f "build-$preset.log"
+  cmake --build --preset "$preset" || exit 1
+  mkdir -p "$(dirname "$log")"
+  ctest --preset "$preset" "$@" | tee "$log"
+  [ "${PIPESTATUS[0]}" -eq 0 ] || status=1
+  # "98% tests passed, 2 tests failed out of 100"
+  read -r bad all < <(sed -n 's/.*tests passed, \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log" | tail -n 1)
+  failed=$((failed + ${bad:-1}))
+  total=$((total + ${all:-1}))
+}
+
+run test -j2
+run sanitize -j2
+
+echo
+echo "$((100 * (total - failed) / total))% tests passed, $failed tests failed out of $total"
+exit $status
