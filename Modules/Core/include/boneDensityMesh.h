@@ -68,6 +68,13 @@ public:
     return m_Cells.neighbors;
   }
 
+  /** A mesh is always whole: there are no regions of it to be asked for. */
+  bool
+  RequestedRegionIsOutsideOfTheBufferedRegion() override
+  {
+    return false;
+  }
+
   void
   Initialize() override;
   void

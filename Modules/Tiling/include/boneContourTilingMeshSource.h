@@ -88,6 +88,10 @@ protected:
   ~ContourTilingMeshSource() override = default;
   void
   VerifyPreconditions() ITKv5_CONST override;
+  /** A mesh takes no information from contours. */
+  void
+  GenerateOutputInformation() override
+  {}
   void
   GenerateInputRequestedRegion() override;
   void
