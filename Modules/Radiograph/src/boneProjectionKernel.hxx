@@ -95,10 +95,54 @@ struct Blossom<N, 0>
 };
 
 /** The density of one cell: A[b][k * (N + 1) + a]. */
-template <typename TReal, int N>
+template <int N>
 struct RayPolynomial
 {
-  TReal a[N + 1][(N + 1) * (N + 1)];
+  double a[N + 1][(N + 1) * (N + 1)];
+};
+
+template <typename TReal>
+struct Vector
+{
+  typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
+};
+
+/** The same, ready to be evaluated for all (k, a) of a row at once. */
+template <typename TReal, int N>
+class RowPolynomial
+{
+public:
+  explicit RowPolynomial(const RayPolynomial<N> & density)
+  {
+    for (int b = 0; b <= N; ++b)
+    {
+      for (int j = 0; j < blocks * lanes; ++j)
+      {
+        m_A[b][j / lanes][j % lanes] = j < size ? static_cast<TReal>(density.a[b][j]) : TReal(0);
+      }
+    }
+  }
+
+  static constexpr int size = (N + 1) * (N + 1);
+  static constexpr int blocks = (size + lanes - 1) / lanes;
+
+  void
+  At(TReal eta, TReal (&values)[blocks * lanes]) const
+  {
+    for (int block = 0; block < blocks; ++block)
+    {
+      Lanes value = m_A[N][block];
+      for (int b = N - 1; b >= 0; --b)
+      {
+        value = value * eta + m_A[b][block];
+      }
+      __builtin_memcpy(values + block * lanes, &value, sizeof(value));
+    }
+  }
+
+private:
+  using Lanes = typename Vector<TReal>::Type;
+  Lanes m_A[N + 1][blocks];
 };
 
 template <int TPoints>
@@ -143,12 +187,6 @@ struct Gauss<5>
                                   0.11846344252809454 };
 };
 
-template <typename TReal>
-struct Vector
-{
-  typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
-};
-
 /** out[0..lanes) += value where the mask says so. */
 inline void
 Accumulate(float * out, const Vector<float>::Type & value)
@@ -172,12 +210,12 @@ template <typename TReal, int N, int TFronts>
 inline void
 AddRow(const TReal (&start)[4],
        const TReal (&step)[4],
-       const TReal (&poly)[(N + 1) * (N + 1)],
-       TReal   xiStart,
-       TReal   xiStep,
-       TReal   kappa,
-       int     count,
-       float * out)
+       const TReal * poly,
+       TReal         xiStart,
+       TReal         xiStep,
+       TReal         kappa,
+       int           count,
+       float *       out)
 {
   using Lanes = typename Vector<TReal>::Type;
   constexpr int points = N / 2 + 1;
@@ -236,18 +274,11 @@ AddRow(const TReal (&start)[4],
 
 template <typename TReal, int N, int TFronts>
 void
-AddRows(const Frame & frame, const RayPolynomial<double, N> & density, const Band & band)
+AddRows(const Frame & frame, const RayPolynomial<N> & density, const Band & band)
 {
-  constexpr int           size = (N + 1) * (N + 1);
-  RayPolynomial<TReal, N> local;
-  for (int b = 0; b <= N; ++b)
-  {
-    for (int j = 0; j < size; ++j)
-    {
-      local.a[b][j] = static_cast<TReal>(density.a[b][j]);
-    }
-  }
-  TReal step[4];
+  using Polynomial = RowPolynomial<TReal, N>;
+  const Polynomial polynomial(density);
+  TReal            step[4];
   for (int i = 0; i < 4; ++i)
   {
     step[i] = static_cast<TReal>(frame.depth[i][1]);
@@ -263,21 +294,12 @@ AddRows(const Frame & frame, const RayPolynomial<double, N> & density, const Ban
       continue;
     }
     const double dc = first - frame.c0;
-    TReal        start[4], poly[size];
+    TReal        start[4], poly[Polynomial::blocks * lanes];
     for (int i = 0; i < 4; ++i)
     {
       start[i] = static_cast<TReal>(frame.depth[i][0] + frame.depth[i][1] * dc + frame.depth[i][2] * dr);
     }
-    const TReal eta = static_cast<TReal>(dr * etaPerRow);
-    for (int j = 0; j < size; ++j)
-    {
-      TReal value = local.a[N][j];
-      for (int b = N - 1; b >= 0; --b)
-      {
-        value = value * eta + local.a[b][j];
-      }
-      poly[j] = value;
-    }
+    polynomial.At(static_cast<TReal>(dr * etaPerRow), poly);
     AddRow<TReal, N, TFronts>(start,
                               step,
                               poly,
@@ -293,7 +315,7 @@ AddRows(const Frame & frame, const RayPolynomial<double, N> & density, const Ban
  * magnitude of a control value: how much rounding may grow. */
 template <int N>
 double
-SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<double, N> & density)
+SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<N> & density)
 {
   double control[CoefficientCount(N)];
   double largest = 0;
@@ -334,7 +356,7 @@ SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<double, N> & de
 
 template <typename TReal, int N>
 void
-AddInPrecision(const Frame & frame, const RayPolynomial<double, N> & density, const Band & band)
+AddInPrecision(const Frame & frame, const RayPolynomial<N> & density, const Band & band)
 {
   switch (frame.fronts)
   {
@@ -358,9 +380,9 @@ AddOfDegree(const Cell & cell, const Band & band)
   {
     return;
   }
-  RayPolynomial<double, N> density;
-  constexpr double         largestGrowth = 64;
-  const double             growth = SetDensity<N>(cell, frame, density);
+  RayPolynomial<N> density;
+  constexpr double largestGrowth = 64;
+  const double     growth = SetDensity<N>(cell, frame, density);
   if (frame.steep || !(growth <= largestGrowth))
   {
     AddInPrecision<double, N>(frame, density, band);
