@@ -53,7 +53,7 @@ struct FemurParameters
  * shaft of elliptic cross-section with a linea aspera; exact sphere of `headRadius` over the head's free half.
  * Endosteal surface: at the depth t(x), smooth in space: `headCortex` in head and trochanters, thickening down the
  * shaft to `shaftCortex` 115 mm below the neck's foot, thicker at the calcar. Layers: nested everywhere, cortical
- * thickness at least 0.97 `headCortex`, spongy bone at least 0.85 `spongyThickness` around the cavity.
+ * thickness at least 0.97 `headCortex`, spongy bone at least 0.7 `spongyThickness` around the cavity.
  *
  * Spongy density (HU): base + head bump (17 mm wide) + principal compressive band from the head's crown to the calcar
  * (6.5 mm wide) + half as much in the tensile band from the greater trochanter to the head; lower down the shaft.

@@ -80,8 +80,8 @@ public:
    * same everywhere. */
   virtual Materials
   EvaluateMaterials(const Vector3 & x, const Levels & levels) const = 0;
-  /** Interval of x . direction (a unit vector) that the bone lies in; up to 2 mm wider than the bone on each side. An
-   * open end counts up to where it is cut. */
+  /** Interval of x . direction (a unit vector) that the bone lies in; up to about 10 mm wider than the bone on each
+   * side. An open end counts up to where it is cut. */
   virtual Interval
   GetExtent(const Vector3 & direction) const = 0;
   /** Long axis; the mean direction of a bone without shaft. */
@@ -114,22 +114,22 @@ public:
 
   /** Density after a Gaussian point spread with standard deviations `sigma` (mm) along the columns of `axes`
    * (orthonormal). Each surface is taken as flat across the direction of its normal, along which its function is
-   * expanded to second order; a curved surface moves by less than sigma^2 times its mean curvature (0.004 mm for sigma
-   * 0.3 mm and a radius of 23 mm). sigma 0 gives the ideal density. */
+   * taken as a parabola or, where it bends, followed in steps; a curved surface moves by less than sigma^2 times its
+   * mean curvature (0.004 mm for sigma 0.3 mm and a radius of 23 mm). sigma 0 gives the ideal density. */
   double
   BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, const Vector3 & sigma) const;
 
   /** Closest point of a surface, by projection along the gradient and tangential correction (E. Hartmann,
    * doi:10.1007/s003710050133); x itself where the surface does not exist. Exact to 1e-6 mm where x is nearer to the
    * surface than to its centres of curvature; further away a nearby foot point. */
-  Vector3
+  virtual Vector3
   ClosestPoint(int surface, const Vector3 & x) const;
 
   /** Distance to a surface, negative inside; the sign is always exact. +infinity where the surface does not exist. */
   double
   Distance(int surface, const Vector3 & x) const;
   /** Distance to the periosteal surface, negative in the bone. */
-  virtual double
+  double
   SignedDistance(const Vector3 & x) const
   {
     return this->Distance(Periosteal, x);
@@ -146,6 +146,12 @@ public:
   Vector3
   GetUpperCorner() const;
   /** \} */
+
+private:
+  /** Part of the Gaussian about x with the standard deviation `deviation` (a vector along the normal) that lies inside
+   * a surface. */
+  double
+  MeasureInside(int surface, const Vector3 & x, double level, const Vector3 & deviation) const;
 };
 } // namespace bone
 

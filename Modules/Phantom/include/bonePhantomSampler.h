@@ -35,16 +35,18 @@ struct PhantomBlock
  * \brief Blurred densities and labels of a phantom on a grid.
  *
  * The point spread is a Gaussian with its axes along the grid's. Its covariance is split in two: what
- * PhantomModel::BlurredDensity does in closed form (a standard deviation of up to AnalyticSigma along each axis), and
- * the rest, a separable sum over a grid finer than the voxels. Only near a surface is the model evaluated in full:
- * blocks of about 2 mm further away than the point spread reaches are soft tissue or a single material.
+ * PhantomModel::BlurredDensity does in closed form (along each axis all of a standard deviation up to AnalyticSigma, of
+ * a larger one about half), and the rest, a separable sum over a grid finer than the voxels. Only near a surface is the
+ * model evaluated in full: blocks of about 2 mm further away than the point spread reaches are soft tissue or a single
+ * material.
  *
  * A value depends on its own index alone, not on the block it was asked with, so work may be divided freely. */
 class PhantomSampler
 {
 public:
-  /** Largest standard deviation (mm) that is left to the closed form. */
-  static constexpr double AnalyticSigma = 0.35;
+  /** A standard deviation (mm) up to which the closed form does it all, and the most it does of a larger one. */
+  static constexpr double AnalyticSigma = 0.45;
+  static constexpr double LargestAnalyticSigma = 0.6;
 
   /** `sigma`: standard deviations of the point spread along the grid's axes, mm; 0 gives the ideal density. */
   PhantomSampler(PhantomModel::Pointer model, const PhantomGrid & grid, const Vector3 & sigma);
@@ -78,7 +80,10 @@ private:
   static Kernel
   MakeKernel(double spacing, double sigma);
   double
-  SampleFine(const Neighbourhoods & neighbourhoods, long i, long j, long k) const;
+  SampleFine(signed char content, const Vector3 & x) const;
+  /** False where all of the row is soft tissue. */
+  bool
+  SampleFineRow(const Neighbourhoods & neighbourhoods, long start, long j, long k, std::vector<double> & row) const;
   void
   SampleFineSlice(const Neighbourhoods & neighbourhoods,
                   const PhantomBlock &   block,

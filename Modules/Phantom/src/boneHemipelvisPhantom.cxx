@@ -19,6 +19,10 @@ namespace
 /** Half axes of the wing's outline, mm. */
 constexpr double WingHalfWidth = 76.0;
 constexpr double WingHalfHeight = 54.0;
+/** The ball around the acetabulum is larger than the bowl, lies deeper, and ends at a plane face, mm. */
+constexpr double CupWall = 7.5;
+constexpr double CupShift = 4.0;
+constexpr double FaceHeight = 3.0;
 
 struct Link
 {
@@ -120,9 +124,9 @@ HemipelvisPhantom::Evaluate(const Vector3 & x) const
   }
 
   // The acetabulum: a ball with a plane face, blended in, and the bowl cut out.
-  const Vector3 centre = -4.0 * m_Opening;
-  const T       face = Dot(p, m_Opening) - T(3.0);
-  bone = SmoothMin(bone, SmoothMax(Ball{ centre, m_P.cupRadius + 7.5 }(p), face, 4.0), 8.0);
+  const Vector3 centre = -CupShift * m_Opening;
+  const T       face = Dot(p, m_Opening) - T(FaceHeight);
+  bone = SmoothMin(bone, SmoothMax(Ball{ centre, m_P.cupRadius + CupWall }(p), face, 4.0), 8.0);
   const T bowl = Ball{ Vector3::Zero(), m_P.cupRadius }(p);
   bone = SmoothMax(bone, T(-bowl), 3.0);
 
@@ -172,23 +176,40 @@ HemipelvisPhantom::EvaluateMaterials(const Vector3 & x, const Levels &) const
 PhantomModel::Interval
 HemipelvisPhantom::GetExtent(const Vector3 & direction) const
 {
-  constexpr double bulge = 1.0;
+  constexpr double bulge = 1.5;
   Interval         interval{ std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest() };
   for (const Link & link : Links(m_P))
   {
     Extend(interval, link.cone.a, direction);
     Extend(interval, link.cone.b, direction);
   }
-  Extend(interval, { -4.0 * m_Opening, m_P.cupRadius + 7.5 }, direction);
+  // The acetabulum's ball up to its face: the highest point of the ball, or of the rim where that is cut off.
+  const double cut = FaceHeight + CupShift;
+  const double outer = m_P.cupRadius + CupWall;
+  for (const double sign : { -1.0, 1.0 })
+  {
+    const double  slope = sign * direction.dot(m_Opening);
+    const bool    isCut = outer * slope > cut;
+    const Vector3 centre = (isCut ? FaceHeight : -CupShift) * m_Opening;
+    const double  reach = isCut ? std::sqrt((outer * outer - cut * cut) * (1.0 - slope * slope)) : outer;
+    const double  shadow = centre.dot(direction) + sign * reach;
+    interval.lower = std::min(interval.lower, shadow);
+    interval.upper = std::max(interval.upper, shadow);
+  }
+  // The edge of the wing on its cylinder, and where its rounding ends.
+  const double half = 0.5 * m_P.crestThickness;
+  const double end = 1.0 + half / (m_P.scale * WingHalfHeight);
   for (int i = 0; i < 360; i += 3)
   {
-    // The edge of the wing, on its cylinder.
-    const double  angle = i * M_PI / 180.0;
-    const double  u = m_P.scale * WingHalfWidth * std::cos(angle);
-    const double  v = m_P.scale * WingHalfHeight * std::sin(angle);
-    const double  w = m_P.wingRadius - std::sqrt(std::max(0.0, m_P.wingRadius * m_P.wingRadius - u * u));
-    const Vector3 point = m_WingCentre + u * m_WingU + v * m_WingV + w * m_WingNormal;
-    Extend(interval, { point, 0.5 * m_P.crestThickness }, direction);
+    const double angle = i * M_PI / 180.0;
+    for (const double grow : { 1.0, end })
+    {
+      const double  u = grow * m_P.scale * WingHalfWidth * std::cos(angle);
+      const double  v = grow * m_P.scale * WingHalfHeight * std::sin(angle);
+      const double  w = m_P.wingRadius - std::sqrt(std::max(0.0, m_P.wingRadius * m_P.wingRadius - u * u));
+      const Vector3 point = m_WingCentre + u * m_WingU + v * m_WingV + w * m_WingNormal;
+      Extend(interval, { point, grow > 1.0 ? 0.0 : half }, direction);
+    }
   }
   return { interval.lower - bulge, interval.upper + bulge };
 }

@@ -42,6 +42,30 @@ MeasureBelowZero(double value, double slope, double curvature)
   const double between = NormalCdf(std::max(a, b)) - NormalCdf(std::min(a, b));
   return curvature > 0.0 ? between : 1.0 - between;
 }
+
+/** Gaussian measure (standard deviation 1) of the places t in -3..3 where `profile` (13 values, half a unit apart) runs
+ * below zero, straight between the values and constant beyond. */
+double
+MeasureBelowZero(const std::array<double, 13> & profile)
+{
+  constexpr double step = 0.5;
+  constexpr double start = -3.0;
+  double           measure = profile.front() < 0.0 ? NormalCdf(start) : 0.0;
+  for (std::size_t i = 0; i + 1 < profile.size(); ++i)
+  {
+    const double a = profile[i];
+    const double b = profile[i + 1];
+    const double left = start + step * static_cast<double>(i);
+    const double crossing = (a < 0.0) != (b < 0.0) ? left + step * a / (a - b) : left + step;
+    const double from = a < 0.0 ? left : crossing;
+    const double to = a < 0.0 ? crossing : left + step;
+    if (a < 0.0 || b < 0.0)
+    {
+      measure += NormalCdf(to) - NormalCdf(from);
+    }
+  }
+  return measure + (profile.back() < 0.0 ? NormalCdf(start) : 0.0);
+}
 } // namespace
 
 int
@@ -88,17 +112,34 @@ PhantomModel::BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, co
       const double  spread = (axes.transpose() * normal).cwiseProduct(sigma).norm();
       if (spread > 0.0 && std::abs(levels[i]) < Tail * spread * this->GetLipschitzBound(i))
       {
-        const double reach = 1.5 * spread;
-        const double above = this->EvaluateLevels(x + reach * normal)[i];
-        const double below = this->EvaluateLevels(x - reach * normal)[i];
-        const double slope = (above - below) / (2.0 * reach);
-        const double curvature = (above + below - 2.0 * levels[i]) / (reach * reach);
-        inside = MeasureBelowZero(levels[i], slope * spread, curvature * spread * spread);
+        inside = this->MeasureInside(i, x, levels[i], spread * normal);
       }
     }
     density += (materials[i + 1] - materials[i]) * inside;
   }
   return density;
+}
+
+double
+PhantomModel::MeasureInside(int surface, const Vector3 & x, double level, const Vector3 & deviation) const
+{
+  const auto   at = [&](double t) { return this->EvaluateLevels(x + t * deviation)[surface]; };
+  const double reach = 2.0;
+  const double above = at(reach);
+  const double below = at(-reach);
+  const double slope = (above - below) / (2.0 * reach);
+  const double bend = above + below - 2.0 * level;
+  if (std::abs(bend) < 0.05 * (above - below))
+  {
+    return MeasureBelowZero(level, slope, bend / (reach * reach));
+  }
+  // The middle of a thin layer or a strong blend: step along the normal.
+  std::array<double, 13> profile;
+  for (int i = 0; i < 13; ++i)
+  {
+    profile[i] = i == 2 ? below : i == 6 ? level : i == 10 ? above : at(0.5 * (i - 6));
+  }
+  return MeasureBelowZero(profile);
 }
 
 Vector3
@@ -107,7 +148,12 @@ PhantomModel::ClosestPoint(int surface, const Vector3 & x) const
   Gradients  gradients;
   const auto step = [&](const Vector3 & p) -> Vector3 {
     const double value = this->EvaluateLevels(p, gradients)[surface];
-    return value / std::max(gradients[surface].squaredNorm(), 1e-12) * gradients[surface];
+    if (gradients[surface].norm() < 1e-6)
+    {
+      // Exactly in the middle of a plate: any side will do.
+      return 1e-3 * Vector3(0.36, 0.48, 0.8);
+    }
+    return value / gradients[surface].squaredNorm() * gradients[surface];
   };
   const auto land = [&](Vector3 p) {
     for (int i = 0; i < 30; ++i)
@@ -128,7 +174,7 @@ PhantomModel::ClosestPoint(int surface, const Vector3 & x) const
   Vector3 foot = land(x);
   double  best = (x - foot).norm();
   double  damping = 1.0;
-  for (int i = 0; i < 60 && damping > 1e-4; ++i)
+  for (int i = 0; i < 200 && damping > 1e-6; ++i)
   {
     step(foot);
     const Vector3 normal = gradients[surface].normalized();
@@ -144,6 +190,7 @@ PhantomModel::ClosestPoint(int surface, const Vector3 & x) const
     {
       foot = candidate;
       best = distance;
+      damping = std::min(1.0, 1.5 * damping);
     }
     else
     {
@@ -176,8 +223,9 @@ PhantomModel::CorticalThickness(const Vector3 & x) const
     return levels[Periosteal] < 0.0 && levels[Endosteal] >= 0.0;
   };
   const double step = 0.05;
+  const double most = 500.0;
   double       inside = step;
-  while (isCortical(inside + step))
+  while (inside < most && isCortical(inside + step))
   {
     inside += step;
   }

@@ -24,7 +24,11 @@ constexpr double BlockEdge = 2.0;
 double
 AnalyticPart(double sigma)
 {
-  return sigma <= PhantomSampler::AnalyticSigma ? sigma : std::min(0.3, sigma * M_SQRT1_2);
+  if (sigma <= PhantomSampler::AnalyticSigma)
+  {
+    return sigma;
+  }
+  return std::min(sigma * M_SQRT1_2, std::clamp(0.5 * sigma, 0.4, PhantomSampler::LargestAnalyticSigma));
 }
 
 long
@@ -42,25 +46,27 @@ public:
   static constexpr signed char Mixed = -1;
 
   Neighbourhoods(const PhantomModel & model, const PhantomGrid & grid, double reach, const PhantomBlock & box)
+    : m_Model(model)
+    , m_Grid(grid)
+    , m_Reach(reach)
   {
+    std::array<long, 3> last;
     for (int a = 0; a < 3; ++a)
     {
       m_Edge[a] = std::max(1L, std::lround(BlockEdge / grid.spacing[a]));
       m_First[a] = FloorDivide(box.start[a], m_Edge[a]);
-      m_Size[a] = FloorDivide(box.start[a] + static_cast<long>(box.size[a]) - 1, m_Edge[a]) - m_First[a] + 1;
+      last[a] = FloorDivide(box.start[a] + static_cast<long>(box.size[a]) - 1, m_Edge[a]);
+      m_Size[a] = last[a] - m_First[a] + 1;
     }
-    const Vector3 edge(m_Edge[0], m_Edge[1], m_Edge[2]);
-    const double  radius = 0.5 * (edge - Vector3::Ones()).cwiseProduct(grid.spacing).norm();
-    m_Content.reserve(m_Size[0] * m_Size[1] * m_Size[2]);
-    for (long k = 0; k < m_Size[2]; ++k)
+    m_Content.resize(m_Size[0] * m_Size[1] * m_Size[2]);
+    const auto begin = [&](int a) { return FloorDivide(m_First[a], Coarsest) * Coarsest; };
+    for (long k = begin(2); k <= last[2]; k += Coarsest)
     {
-      for (long j = 0; j < m_Size[1]; ++j)
+      for (long j = begin(1); j <= last[1]; j += Coarsest)
       {
-        for (long i = 0; i < m_Size[0]; ++i)
+        for (long i = begin(0); i <= last[0]; i += Coarsest)
         {
-          const Vector3 block(m_First[0] + i, m_First[1] + j, m_First[2] + k);
-          const Vector3 centre = block.cwiseProduct(edge) + 0.5 * (edge - Vector3::Ones());
-          m_Content.push_back(Classify(model, grid.At(centre[0], centre[1], centre[2]), radius + reach));
+          this->Fill({ { i, j, k } }, Coarsest);
         }
       }
     }
@@ -75,11 +81,17 @@ public:
     return m_Content[(z * m_Size[1] + y) * m_Size[0] + x];
   }
 
-  /** The region that the ball of the radius about x lies in, or Mixed. */
-  static signed char
-  Classify(const PhantomModel & model, const Vector3 & x, double radius)
+  /** One past the last column of the block that column i lies in. */
+  long
+  GetColumnEnd(long i) const
   {
-    const PhantomModel::Levels levels = model.EvaluateLevels(x);
+    return (FloorDivide(i, m_Edge[0]) + 1) * m_Edge[0];
+  }
+
+  /** The region that the ball of the radius about a point with these levels lies in, or Mixed. */
+  static signed char
+  Classify(const PhantomModel & model, const PhantomModel::Levels & levels, double radius)
+  {
     if (levels[PhantomModel::Periosteal] > radius * model.GetLipschitzBound(PhantomModel::Periosteal))
     {
       return Region::Outside;
@@ -95,6 +107,52 @@ public:
   }
 
 private:
+  /** Blocks along each edge of the cubes that the search starts from. */
+  static constexpr long Coarsest = 16;
+
+  /** Classifies the cube of width^3 blocks from `block` on, by halves where it is mixed. */
+  void
+  Fill(const std::array<long, 3> & block, long width)
+  {
+    Vector3 centre;
+    Vector3 size;
+    for (int a = 0; a < 3; ++a)
+    {
+      if (block[a] >= m_First[a] + m_Size[a] || block[a] + width <= m_First[a])
+      {
+        return;
+      }
+      centre[a] = static_cast<double>(block[a] * m_Edge[a]) + 0.5 * static_cast<double>(width * m_Edge[a] - 1);
+      size[a] = static_cast<double>(width * m_Edge[a] - 1) * m_Grid.spacing[a];
+    }
+    const PhantomModel::Levels levels = m_Model.EvaluateLevels(m_Grid.At(centre[0], centre[1], centre[2]));
+    const signed char          content = Classify(m_Model, levels, 0.5 * size.norm() + m_Reach);
+    if (content == Mixed && width > 1)
+    {
+      const long half = width / 2;
+      for (int child = 0; child < 8; ++child)
+      {
+        this->Fill({ { block[0] + (child & 1 ? half : 0),
+                       block[1] + (child & 2 ? half : 0),
+                       block[2] + (child & 4 ? half : 0) } },
+                   half);
+      }
+      return;
+    }
+    for (long k = std::max(block[2] - m_First[2], 0L); k < std::min(block[2] - m_First[2] + width, m_Size[2]); ++k)
+    {
+      for (long j = std::max(block[1] - m_First[1], 0L); j < std::min(block[1] - m_First[1] + width, m_Size[1]); ++j)
+      {
+        const auto row = m_Content.begin() + (k * m_Size[1] + j) * m_Size[0];
+        std::fill(
+          row + std::max(block[0] - m_First[0], 0L), row + std::min(block[0] - m_First[0] + width, m_Size[0]), content);
+      }
+    }
+  }
+
+  const PhantomModel &     m_Model;
+  const PhantomGrid &      m_Grid;
+  double                   m_Reach;
   std::array<long, 3>      m_Edge;
   std::array<long, 3>      m_First;
   std::array<long, 3>      m_Size;
@@ -129,9 +187,10 @@ PhantomSampler::MakeKernel(double spacing, double sigma)
   {
     return kernel;
   }
-  // A Gaussian sum of samples that are themselves blurred by a Gaussian: with steps of 1.15 standard deviations of the
-  // narrower one its error is below 1e-3 of a step.
-  kernel.factor = std::max(1L, static_cast<long>(std::ceil(spacing / (1.15 * std::min(analytic, rest)))));
+  // A Gaussian sum of samples that are themselves blurred by a Gaussian. Along the axis the product of both has the
+  // standard deviation `narrow`; with steps of h its sum is wrong by exp(-2 pi^2 narrow^2 / h^2) = 7e-4 of an edge.
+  const double narrow = analytic * rest / sigma;
+  kernel.factor = std::max(1L, static_cast<long>(std::ceil(spacing / (1.65 * narrow) - 1e-9)));
   const double step = spacing / static_cast<double>(kernel.factor);
   const auto   reach = static_cast<long>(std::ceil(Tail * rest / step));
   const long   count = 2 * reach + (kernel.factor % 2 == 0 ? 0 : 1);
@@ -150,23 +209,50 @@ PhantomSampler::MakeKernel(double spacing, double sigma)
 }
 
 double
-PhantomSampler::SampleFine(const Neighbourhoods & neighbourhoods, long i, long j, long k) const
+PhantomSampler::SampleFine(signed char content, const Vector3 & x) const
 {
-  signed char content = neighbourhoods(i, j, k);
-  if (content == Region::Outside)
-  {
-    return m_SoftTissue;
-  }
-  const Vector3 x = m_Fine.At(i, j, k);
+  const PhantomModel::Levels levels = m_Model->EvaluateLevels(x);
   if (content == Neighbourhoods::Mixed)
   {
-    content = Neighbourhoods::Classify(*m_Model, x, Tail * m_AnalyticSigma.maxCoeff());
+    content = Neighbourhoods::Classify(*m_Model, levels, Tail * m_AnalyticSigma.maxCoeff());
   }
-  if (content == Neighbourhoods::Mixed)
+  switch (content)
   {
-    return m_Model->BlurredDensity(x, m_Fine.axes, m_AnalyticSigma);
+    case Neighbourhoods::Mixed:
+      return m_Model->BlurredDensity(x, m_Fine.axes, m_AnalyticSigma);
+    case Region::Outside:
+      return m_SoftTissue;
+    default:
+      return m_Model->EvaluateMaterials(x, levels)[content];
   }
-  return content == Region::Outside ? m_SoftTissue : m_Model->EvaluateMaterials(x, m_Model->EvaluateLevels(x))[content];
+}
+
+bool
+PhantomSampler::SampleFineRow(const Neighbourhoods & neighbourhoods,
+                              long                   start,
+                              long                   j,
+                              long                   k,
+                              std::vector<double> &  row) const
+{
+  const auto count = static_cast<long>(row.size());
+  bool       hasBone = false;
+  for (long i = 0; i < count;)
+  {
+    const signed char content = neighbourhoods(start + i, j, k);
+    const long        end = std::min(count, neighbourhoods.GetColumnEnd(start + i) - start);
+    if (content == Region::Outside)
+    {
+      std::fill(row.begin() + i, row.begin() + end, m_SoftTissue);
+      i = end;
+      continue;
+    }
+    hasBone = true;
+    for (; i < end; ++i)
+    {
+      row[i] = this->SampleFine(content, m_Fine.At(start + i, j, k));
+    }
+  }
+  return hasBone;
 }
 
 void
@@ -188,13 +274,16 @@ PhantomSampler::SampleFineSlice(const Neighbourhoods & neighbourhoods,
   std::fill(slice.begin(), slice.end(), 0.0);
   for (long j = 0; j < fineRows; ++j)
   {
-    for (long i = 0; i < fineColumns; ++i)
+    if (this->SampleFineRow(neighbourhoods, kx.First(block.start[0]), ky.First(block.start[1]) + j, k, fine))
     {
-      fine[i] = this->SampleFine(neighbourhoods, kx.First(block.start[0]) + i, ky.First(block.start[1]) + j, k);
+      for (long i = 0; i < columns; ++i)
+      {
+        row[i] = std::inner_product(kx.weights.begin(), kx.weights.end(), fine.begin() + i * kx.factor, 0.0);
+      }
     }
-    for (long i = 0; i < columns; ++i)
+    else
     {
-      row[i] = std::inner_product(kx.weights.begin(), kx.weights.end(), fine.begin() + i * kx.factor, 0.0);
+      std::fill(row.begin(), row.end(), m_SoftTissue);
     }
     // Voxel row v takes fine row j with weight j - v * factor.
     const long first = std::max(0L, FloorDivide(j - tapsY, ky.factor) + 1);
