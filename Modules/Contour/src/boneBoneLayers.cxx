@@ -262,12 +262,12 @@ LayerFinder::FindMedullary(const BonePiece & piece, const PlaneField & plane) co
       // 100 HU below the threshold count as 1 mm; only what lies within the endosteal contour is averaged.
       const double dark = (m_Parameters.medullaryThreshold - plane.Sample(field.grid.Node(i, j))) / 100.0;
       weight.values[n] = allowed.values[n] > 0.0F ? 1.0F : 0.0F;
-      field.values[n] = weight.values[n] * static_cast<float>(std::clamp(dark, -2.0, 2.0));
+      field.values[n] = weight.values[n] * static_cast<float>(std::clamp(dark, -1.0, 2.0));
       allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumDistance, -9.0, 9.0));
     }
   }
-  SmoothField(field, 1.2);
-  SmoothField(weight, 1.2);
+  SmoothField(field, 1.5);
+  SmoothField(weight, 1.5);
   for (std::size_t n = 0; n < field.values.size(); ++n)
   {
     field.values[n] /= std::max(weight.values[n], 1e-3F);

@@ -1,0 +1,93 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMedialAxisFilter_hxx
+#define boneMedialAxisFilter_hxx
+
+#include "boneMedialAxisFilter.h"
+
+#include <algorithm>
+
+namespace bone
+{
+template <typename TContourStack>
+void
+MedialAxisFilter<TContourStack>::VerifyPreconditions() ITKv5_CONST
+{
+  Superclass::VerifyPreconditions();
+  this->CheckParameter("Spacing", m_Spacing, true);
+  this->CheckParameter("Significance", m_Significance);
+  this->CheckParameter("Roundness", m_Roundness, true);
+}
+
+template <typename TContourStack>
+ContourSlice
+MedialAxisFilter<TContourStack>::MakeSlice(const TContourStack & input, std::size_t k)
+{
+  const ContourSlice & slice = input.GetSlices()[k];
+  MedialAxisParameters parameters;
+  parameters.significance = m_Significance;
+  parameters.roundness = m_Roundness;
+  const double height = input.GetHeight(k);
+  ContourSlice result;
+  result.origin = slice.origin;
+  int                  nextId = 0;
+  std::vector<Polygon> polygons;
+  for (const Contour & contour : slice.contours)
+  {
+    if (!contour.axis)
+    {
+      nextId = std::max(nextId, contour.id + 1);
+      result.contours.push_back(contour);
+      polygons.emplace_back();
+      for (const Vector3 & point : contour.points)
+      {
+        polygons.back().push_back(input.ToPlane(point));
+      }
+    }
+  }
+  for (std::size_t c = 0; c < polygons.size(); ++c)
+  {
+    const Contour contour = result.contours[c];
+    const bool    holdsAnother = std::any_of(polygons.begin(), polygons.end(), [&](const Polygon & other) {
+      return &other != &polygons[c] && PointInPolygon(other[0], polygons[c]);
+    });
+    if (contour.region == Region::Outside || holdsAnother)
+    {
+      continue;
+    }
+    double length = 0.0;
+    for (std::size_t i = 0; i < polygons[c].size(); ++i)
+    {
+      length += (polygons[c][(i + 1) % polygons[c].size()] - polygons[c][i]).norm();
+    }
+    parameters.spacing = m_Spacing > 0.0 ? m_Spacing : length / static_cast<double>(polygons[c].size());
+    for (const AxisBranch & branch : ComputeMedialAxis(polygons[c], parameters))
+    {
+      Contour axis;
+      axis.axis = true;
+      axis.layer = contour.layer + 1;
+      axis.region = contour.region;
+      axis.id = nextId++;
+      for (const Vector2 & q : branch)
+      {
+        axis.points.push_back(input.FromPlane(q, height));
+      }
+      result.contours.push_back(std::move(axis));
+    }
+  }
+  return result;
+}
+
+template <typename TContourStack>
+void
+MedialAxisFilter<TContourStack>::PrintSelf(std::ostream & os, itk::Indent indent) const
+{
+  Superclass::PrintSelf(os, indent);
+  os << indent << "Spacing: " << m_Spacing << '\n';
+  os << indent << "Significance: " << m_Significance << '\n';
+  os << indent << "Roundness: " << m_Roundness << '\n';
+}
+} // namespace bone
+
+#endif
