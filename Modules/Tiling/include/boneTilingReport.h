@@ -23,6 +23,8 @@ struct TilingReport
   int holesLeftOut{ 0 };       ///< holes closed (second of a piece, or not triangulable)
   int axesRecomputed{ 0 };     ///< medial axes that could not be used as given
   int alternativeKnits{ 0 };   ///< slabs that needed the other diagonals or another start
+  int otherAxes{ 0 };          ///< slabs that needed another medial axis above
+  int piecesLeftOut{ 0 };      ///< small pieces of a single slice left out because they could not be joined
   int intermediateSlices{ 0 }; ///< planes inserted between two slices to make a slab feasible
   int starFillings{ 0 };       ///< slabs filled from one interior vertex
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace bone
@@ -20,6 +21,7 @@ using namespace tiling;
 
 constexpr double LeastCapHeight = 0.2; // of the slab
 constexpr double MostCapHeight = 0.9;
+constexpr double LargestAreaLeftOut = 40.0; // mm^2
 
 /** Tiles all slabs of a stack in order. */
 class StackTiler
@@ -42,18 +44,16 @@ public:
     m_Sections.resize(slices);
     for (int k = 0; k < slices; ++k)
     {
-      BuildSlice(k);
-      Progress(0.3 * (k + 1) / slices);
+      CollectSlice(k);
     }
     for (int k = 0; k < slices; ++k)
     {
-      m_CappedBelow.emplace_back(m_Sections[k].size(), 1);
-      m_CappedAbove.emplace_back(m_Sections[k].size(), 1);
-    }
-    for (int k = 0; k + 1 < slices; ++k)
-    {
-      TileSlab(k);
-      Progress(0.3 + 0.6 * (k + 1) / slices);
+      BuildSlice(k);
+      if (k > 0)
+      {
+        TileSlab(k - 1);
+      }
+      Progress(0.9 * (k + 1) / slices);
     }
     CloseEnds();
     return Assemble();
@@ -69,35 +69,56 @@ private:
     }
   }
 
-  /** Matches the pieces of slice k with those of the slice before and triangulates them. */
+  /** Sorts the contours of slice k into pieces and matches them with those of the slice before. */
   void
-  BuildSlice(int k)
+  CollectSlice(int k)
   {
-    auto                              pieces = CollectPieces(m_Stack, k, m_Report);
+    m_Pieces.push_back(CollectPieces(m_Stack, k, m_Report));
+    m_CappedBelow.emplace_back(m_Pieces[k].size(), 1);
+    m_CappedAbove.emplace_back(m_Pieces[k].size(), 1);
+    if (k > 0)
+    {
+      m_Groups.push_back(MatchPieces(Outlines(k - 1), Outlines(k), m_Stack.GetHeight(k) - m_Stack.GetHeight(k - 1)));
+    }
+  }
+
+  std::vector<std::vector<Vector2>>
+  Outlines(int k) const
+  {
     std::vector<std::vector<Vector2>> polygons;
-    for (const PieceOutline & piece : pieces)
+    for (const PieceOutline & piece : m_Pieces[k])
     {
       polygons.push_back(piece.loops.front().points);
     }
-    std::vector<PlanarTree> carried(pieces.size());
+    return polygons;
+  }
+
+  /** Triangulates the pieces of slice k. */
+  void
+  BuildSlice(int k)
+  {
+    m_Carried.assign(m_Pieces[k].size(), PlanarTree{});
     if (k > 0)
     {
-      m_Groups.push_back(MatchPieces(m_Polygons, polygons, m_Stack.GetHeight(k) - m_Stack.GetHeight(k - 1)));
-      for (const Group & group : m_Groups.back())
+      for (const Group & group : m_Groups[k - 1])
       {
         for (int i : group.upper)
         {
-          carried[i] = AxisOf(k - 1, group.lower);
+          m_Carried[i] = AxisOf(k - 1, group.lower);
         }
       }
     }
-    for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (std::size_t i = 0; i < m_Pieces[k].size(); ++i)
     {
-      m_Sections[k].push_back(BuildSection(
-        m_Stack, std::move(pieces[i]), carried[i], CarriedTolerance, k, m_Stack.GetHeight(k), m_Pool, m_Report));
+      m_Sections[k].push_back(Build(k, i, m_Carried[i], CarriedTolerance, m_Report));
       ++m_Report.sections;
     }
-    m_Polygons = std::move(polygons);
+  }
+
+  Section
+  Build(int k, std::size_t i, const PlanarTree & carried, double tolerance, TilingReport & report)
+  {
+    return BuildSection(m_Stack, m_Pieces[k][i], carried, tolerance, k, m_Stack.GetHeight(k), m_Pool, report);
   }
 
   /** The medial axis of some sections of a slice, joined by bridges; empty where there is none. */
@@ -118,29 +139,41 @@ private:
     return TreeOfWalk(m_Pool.plane, joined.walks.back());
   }
 
+  std::vector<Section>
+  Pick(int k, const std::vector<int> & ids) const
+  {
+    std::vector<Section> sections;
+    for (int i : ids)
+    {
+      sections.push_back(m_Sections[k][i]);
+    }
+    return sections;
+  }
+
   void
   TileSlab(int k)
   {
     const double      low = m_Stack.GetHeight(k), high = m_Stack.GetHeight(k + 1);
     const std::size_t begin = m_Tetrahedra.size();
-    for (const Group & group : m_Groups[k])
+    for (Group & group : m_Groups[k])
     {
       if (group.lower.empty() || group.upper.empty())
       {
         continue;
       }
-      std::vector<Section> lower, upper;
+      Count(Pick(k, group.lower), Pick(k + 1, group.upper));
+      if (!m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) && !TryOtherAxes(k, group))
+      {
+        TileOrThin(k, group, low, high);
+      }
       for (int i : group.lower)
       {
-        lower.push_back(m_Sections[k][i]);
         m_CappedAbove[k][i] = 0;
       }
       for (int i : group.upper)
       {
-        upper.push_back(m_Sections[k + 1][i]);
         m_CappedBelow[k + 1][i] = 0;
       }
-      m_Slabs.TileGroup(lower, upper, low, high);
     }
     if (WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, low, high))
     {
@@ -149,6 +182,103 @@ private:
         ": surfaces of neighbouring pieces cross on the way to the next slice; use a smaller slice "
         "step");
     }
+  }
+
+  void
+  Count(const std::vector<Section> & lower, const std::vector<Section> & upper)
+  {
+    std::vector<Section> both = lower;
+    both.insert(both.end(), upper.begin(), upper.end());
+    const std::size_t regions = RegionsOf(both).size();
+    ++m_Report.slabs;
+    m_Report.branchings += both.size() > 2;
+    m_Report.layerBranchings +=
+      std::any_of(both.begin(), both.end(), [regions](const Section & s) { return s.region.size() < regions; });
+  }
+
+  /** The slice above has no slab yet: it may take on the axis from below at any cost, or keep to its own. */
+  bool
+  TryOtherAxes(int k, const Group & group)
+  {
+    for (const bool carry : { true, false })
+    {
+      std::vector<Section> upper;
+      TilingReport         scratch;
+      for (int i : group.upper)
+      {
+        upper.push_back(
+          Build(k + 1, i, carry ? m_Carried[i] : PlanarTree{}, std::numeric_limits<double>::max(), scratch));
+      }
+      if (m_Slabs.TryDirect(Pick(k, group.lower), upper))
+      {
+        for (std::size_t i = 0; i < upper.size(); ++i)
+        {
+          m_Sections[k + 1][group.upper[i]] = upper[i];
+        }
+        ++m_Report.otherAxes;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /** Tiles a group by the ways out; where they fail, without its small pieces that no other slice knows. */
+  void
+  TileOrThin(int k, Group & group, double low, double high)
+  {
+    try
+    {
+      m_Slabs.TileGroup(Pick(k, group.lower), Pick(k + 1, group.upper), low, high);
+    }
+    catch (const std::runtime_error &)
+    {
+      if (!LeaveOutSmallest(k, group))
+      {
+        throw;
+      }
+      TileOrThin(k, group, low, high);
+    }
+  }
+
+  /** True where piece i of slice k has a counterpart on the slice on its other side. */
+  bool
+  Continues(int k, int i, bool above) const
+  {
+    const int slab = above ? k : k - 1;
+    if (slab < 0 || slab >= static_cast<int>(m_Groups.size()))
+    {
+      return false;
+    }
+    return std::any_of(m_Groups[slab].begin(), m_Groups[slab].end(), [&](const Group & group) {
+      const auto & own = above ? group.lower : group.upper;
+      const auto & other = above ? group.upper : group.lower;
+      return !other.empty() && std::count(own.begin(), own.end(), i) > 0;
+    });
+  }
+
+  bool
+  LeaveOutSmallest(int k, Group & group)
+  {
+    const bool         below = group.lower.size() > 1;
+    std::vector<int> & leaves = below ? group.lower : group.upper;
+    const int          slice = below ? k : k + 1;
+    if (leaves.size() < 2)
+    {
+      return false;
+    }
+    const auto area = [&](int i) { return OuterArea(slice, i); };
+    const auto smallest =
+      std::min_element(leaves.begin(), leaves.end(), [&](int a, int b) { return area(a) < area(b); });
+    if (Continues(slice, *smallest, !below) || area(*smallest) > LargestAreaLeftOut)
+    {
+      return false;
+    }
+    ++m_Report.piecesLeftOut;
+    m_Report.notes.push_back("slice " + std::to_string(slice) + ": a piece of " + std::to_string(area(*smallest)) +
+                             " mm2 that no other slice knows cannot be joined and was left out");
+    m_CappedBelow[slice][*smallest] = m_CappedAbove[slice][*smallest] = 0;
+    leaves.erase(smallest);
+    return true;
   }
 
   /** Closes what has no counterpart on the next slice, up or down; flat where the bone leaves the image. */
@@ -240,16 +370,17 @@ private:
     return mesh;
   }
 
-  const ContourStack &              m_Stack;
-  const TilingParameters &          m_Parameters;
-  TilingReport &                    m_Report;
-  VertexPool                        m_Pool;
-  std::vector<TiledTetra>           m_Tetrahedra;
-  SlabTiler                         m_Slabs;
-  std::vector<std::vector<Section>> m_Sections;
-  std::vector<std::vector<Vector2>> m_Polygons; ///< outer contours of the slice built last
-  std::vector<std::vector<Group>>   m_Groups;   ///< of slice k and k + 1
-  std::vector<std::vector<char>>    m_CappedBelow, m_CappedAbove;
+  const ContourStack &                   m_Stack;
+  const TilingParameters &               m_Parameters;
+  TilingReport &                         m_Report;
+  VertexPool                             m_Pool;
+  std::vector<TiledTetra>                m_Tetrahedra;
+  SlabTiler                              m_Slabs;
+  std::vector<std::vector<Section>>      m_Sections;
+  std::vector<std::vector<PieceOutline>> m_Pieces;
+  std::vector<PlanarTree>                m_Carried; ///< axes from below for the slice built last
+  std::vector<std::vector<Group>>        m_Groups;  ///< of slice k and k + 1
+  std::vector<std::vector<char>>         m_CappedBelow, m_CappedAbove;
 };
 } // namespace
 

@@ -14,7 +14,7 @@ namespace bone
 namespace tiling
 {
 /** Default of `tolerance` in BuildSection. */
-constexpr double CarriedTolerance = 1.25;
+constexpr double CarriedTolerance = 1.12;
 
 /** One nested piece of a slice before it is triangulated: polygons in the plane, all counter-clockwise. */
 struct PieceOutline

@@ -104,6 +104,25 @@ SlabTiler::TryKnit(const Section & lower, const Section & upper, const std::vect
   return false;
 }
 
+bool
+SlabTiler::TryDirect(const std::vector<Section> & lower, const std::vector<Section> & upper)
+{
+  std::vector<Section> both = lower;
+  both.insert(both.end(), upper.begin(), upper.end());
+  const std::vector<int> regions = RegionsOf(both);
+  Section                below, above;
+  EdgeSet                used = m_UsedEdges;
+  if (!Compose(m_Pool.plane, lower, regions, used, below) || !Compose(m_Pool.plane, upper, regions, used, above) ||
+      !TryKnit(below, above, RingRegions(below, above)))
+  {
+    return false;
+  }
+  m_UsedEdges = used;
+  MarkCollapsed(below);
+  MarkCollapsed(above);
+  return true;
+}
+
 void
 SlabTiler::TileGroup(const std::vector<Section> & lower,
                      const std::vector<Section> & upper,
@@ -111,27 +130,12 @@ SlabTiler::TileGroup(const std::vector<Section> & lower,
                      double                       upperHeight,
                      int                          depth)
 {
-  std::vector<Section> both = lower;
-  both.insert(both.end(), upper.begin(), upper.end());
-  const std::vector<int> regions = RegionsOf(both);
-  Section                below, above;
-  EdgeSet                used = m_UsedEdges;
-  const bool             composed =
-    Compose(m_Pool.plane, lower, regions, used, below) && Compose(m_Pool.plane, upper, regions, used, above);
   if (depth == 0)
   {
     m_Budget = PlaneBudget;
-    ++m_Report.slabs;
-    m_Report.branchings += lower.size() + upper.size() > 2;
-    const auto lacks = [&regions](const Section & section) { return section.region.size() < regions.size(); };
-    m_Report.layerBranchings +=
-      std::any_of(lower.begin(), lower.end(), lacks) || std::any_of(upper.begin(), upper.end(), lacks);
   }
-  if (composed && TryKnit(below, above, RingRegions(below, above)))
+  if (TryDirect(lower, upper))
   {
-    m_UsedEdges = used;
-    MarkCollapsed(below);
-    MarkCollapsed(above);
     return;
   }
   if (TryIntermediate(lower, upper, lowerHeight, upperHeight, depth))
@@ -142,9 +146,8 @@ SlabTiler::TileGroup(const std::vector<Section> & lower,
                             std::to_string(lower.front().walks[0].size()) + " points at (" +
                             std::to_string(m_Pool.plane[lower.front().walks[0][0]].x()) + ", " +
                             std::to_string(m_Pool.plane[lower.front().walks[0][0]].y()) + ") mm in the plane";
-  if (composed && TryStar(below, above, 0.5 * (lowerHeight + upperHeight)))
+  if (TryStar(lower, upper, 0.5 * (lowerHeight + upperHeight)))
   {
-    m_UsedEdges = used;
     ++m_Report.starFillings;
     m_Report.notes.push_back(place + ": the slab above was filled from one interior vertex");
     return;
@@ -240,6 +243,7 @@ SlabTiler::TryPlane(const std::vector<Section> &      lower,
         m_Stack, piece, axis, std::numeric_limits<double>::max(), lower.front().slice, height, m_Pool, m_Report));
     }
     const auto connect = [&](const std::vector<Section> & a, const std::vector<Section> & b, double ha, double hb) {
+      const std::size_t begin = m_Tetrahedra.size();
       for (const Group & group : MatchPieces(OuterPolygons(m_Pool.plane, a), OuterPolygons(m_Pool.plane, b), hb - ha))
       {
         if (group.lower.empty() || group.upper.empty())
@@ -247,6 +251,10 @@ SlabTiler::TryPlane(const std::vector<Section> &      lower,
           throw std::runtime_error("a piece lost its counterpart");
         }
         TileGroup(Pick(a, group.lower), Pick(b, group.upper), ha, hb, depth + 1);
+      }
+      if (WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, ha, hb))
+      {
+        throw std::runtime_error("surfaces cross");
       }
     };
     if (!middle.empty())
@@ -294,12 +302,14 @@ SlabTiler::AddWallCells(const Walk & lower, const Walk & upper, const Merge & wa
 }
 
 bool
-SlabTiler::TryStar(const Section & lower, const Section & upper, double height)
+SlabTiler::TryStar(const std::vector<Section> & lowers, const std::vector<Section> & uppers, double height)
 {
-  if (lower.hole || upper.hole)
+  if (lowers.size() > 1 || uppers.size() > 1 || lowers.front().hole || uppers.front().hole)
   {
     return false;
   }
+  const Section &      lower = lowers.front();
+  const Section &      upper = uppers.front();
   std::vector<Vector2> centres;
   for (const Section * section : { &lower, &upper })
   {

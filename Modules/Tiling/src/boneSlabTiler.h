@@ -30,6 +30,10 @@ public:
     , m_Report(report)
   {}
 
+  /** Knits the sections of two planes that belong together, if that can be done as it is. */
+  bool
+  TryDirect(const std::vector<Section> & lower, const std::vector<Section> & upper);
+
   /** Tiles the sections of two planes at the given heights that belong together: one on one side at least, none of the
    * sides empty. Throws std::runtime_error where every way fails. */
   void
@@ -76,7 +80,7 @@ private:
   PlanarTree
   AxisOf(const std::vector<Section> & sections) const;
   bool
-  TryStar(const Section & lower, const Section & upper, double height);
+  TryStar(const std::vector<Section> & lowers, const std::vector<Section> & uppers, double height);
   void
   AddWallCells(const Walk & lower, const Walk & upper, const Merge & wall, int apex);
   void
