@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace bone
@@ -23,16 +24,40 @@ constexpr double LeastCapHeight = 0.2; // of the slab
 constexpr double MostCapHeight = 0.9;
 constexpr double LargestAreaLeftOut = 40.0; // mm^2
 
-/** Tiles all slabs of a stack in order. */
+/** A piece of a slice: slice and position among its pieces. */
+using PieceId = std::pair<int, int>;
+
+/** No way to fill the space between some pieces of two slices. */
+class SlabFailure : public std::runtime_error
+{
+public:
+  SlabFailure(const std::string & what, std::vector<PieceId> pieces)
+    : std::runtime_error(what)
+    , m_Pieces(std::move(pieces))
+  {}
+
+  const std::vector<PieceId> &
+  GetPieces() const
+  {
+    return m_Pieces;
+  }
+
+private:
+  std::vector<PieceId> m_Pieces;
+};
+
+/** Tiles all slabs of a stack in order. Pieces named in `plain` do without their inner layers. */
 class StackTiler
 {
 public:
-  StackTiler(const ContourStack &     stack,
-             const TilingMetric &     metric,
-             const TilingParameters & parameters,
-             TilingReport &           report)
+  StackTiler(const ContourStack &      stack,
+             const TilingMetric &      metric,
+             const TilingParameters &  parameters,
+             const std::set<PieceId> & plain,
+             TilingReport &            report)
     : m_Stack(stack)
     , m_Parameters(parameters)
+    , m_Plain(plain)
     , m_Report(report)
     , m_Slabs(stack, metric, m_Pool, m_Tetrahedra, report)
   {}
@@ -74,6 +99,18 @@ private:
   CollectSlice(int k)
   {
     m_Pieces.push_back(CollectPieces(m_Stack, k, m_Report));
+    for (std::size_t i = 0; i < m_Pieces[k].size(); ++i)
+    {
+      PieceOutline & piece = m_Pieces[k][i];
+      if (m_Plain.count({ k, static_cast<int>(i) }) > 0 && piece.loops.size() > 1)
+      {
+        m_Report.loopsLeftOut += static_cast<int>(piece.loops.size()) - 1;
+        m_Report.notes.push_back("slice " + std::to_string(k) + ", contour " + std::to_string(piece.loops[0].id) +
+                                 ": its inner contours were left out, the slab could not be tiled with them");
+        piece.loops.resize(1);
+        piece.axis.clear();
+      }
+    }
     m_CappedBelow.emplace_back(m_Pieces[k].size(), 1);
     m_CappedAbove.emplace_back(m_Pieces[k].size(), 1);
     if (k > 0)
@@ -230,14 +267,35 @@ private:
     {
       m_Slabs.TileGroup(Pick(k, group.lower), Pick(k + 1, group.upper), low, high);
     }
-    catch (const std::runtime_error &)
+    catch (const std::runtime_error & error)
     {
       if (!LeaveOutSmallest(k, group))
       {
-        throw;
+        throw SlabFailure(error.what(), LayeredPieces(k, group));
       }
       TileOrThin(k, group, low, high);
     }
+  }
+
+  std::vector<PieceId>
+  LayeredPieces(int k, const Group & group) const
+  {
+    std::vector<PieceId> pieces;
+    for (int i : group.lower)
+    {
+      if (m_Pieces[k][i].loops.size() > 1)
+      {
+        pieces.emplace_back(k, i);
+      }
+    }
+    for (int i : group.upper)
+    {
+      if (m_Pieces[k + 1][i].loops.size() > 1)
+      {
+        pieces.emplace_back(k + 1, i);
+      }
+    }
+    return pieces;
   }
 
   /** True where piece i of slice k has a counterpart on the slice on its other side. */
@@ -372,6 +430,7 @@ private:
 
   const ContourStack &                   m_Stack;
   const TilingParameters &               m_Parameters;
+  const std::set<PieceId> &              m_Plain;
   TilingReport &                         m_Report;
   VertexPool                             m_Pool;
   std::vector<TiledTetra>                m_Tetrahedra;
@@ -387,7 +446,6 @@ private:
 MeshArrays
 TileContours(const ContourStack & stack, const TilingParameters & parameters, TilingReport & report)
 {
-  report = TilingReport();
   std::size_t closed = 0, slices = 0;
   for (const ContourSlice & slice : stack.GetSlices())
   {
@@ -402,7 +460,23 @@ TileContours(const ContourStack & stack, const TilingParameters & parameters, Ti
                              " slice(s); a mesh needs at least two slices with closed contours");
   }
   const SpanLengthMetric span;
-  StackTiler             tiler(stack, parameters.metric ? *parameters.metric : span, parameters, report);
-  return tiler.Run();
+  std::set<PieceId>      plain;
+  for (;;)
+  {
+    report = TilingReport();
+    StackTiler tiler(stack, parameters.metric ? *parameters.metric : span, parameters, plain, report);
+    try
+    {
+      return tiler.Run();
+    }
+    catch (const SlabFailure & failure)
+    {
+      if (failure.GetPieces().empty())
+      {
+        throw;
+      }
+      plain.insert(failure.GetPieces().begin(), failure.GetPieces().end());
+    }
+  }
 }
 } // namespace bone

@@ -22,7 +22,7 @@ namespace
 {
 constexpr int KnitBudget = 60;  // ring knits tried before another way is taken
 constexpr int MaximumDepth = 3; // halvings of a slab by planes in between
-constexpr int PlaneBudget = 40; // planes in between tried for one slab
+constexpr int PlaneBudget = 14; // planes in between tried for one slab
 
 std::vector<std::vector<Vector2>>
 OuterPolygons(const std::vector<Vector2> & plane, const std::vector<Section> & sections)
