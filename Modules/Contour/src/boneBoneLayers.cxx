@@ -238,7 +238,7 @@ LayerFinder::FindEndosteal(const BonePiece & piece, const std::vector<SurfaceSam
     field.values[n] = static_cast<float>(std::clamp(field.values[n] - thickness, -4.0, 4.0));
     allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumDistance, -9.0, 9.0));
   }
-  SmoothField(field, 1.0);
+  SmoothField(field, 0.6);
   return this->Regularise(field, allowed);
 }
 
@@ -266,8 +266,8 @@ LayerFinder::FindMedullary(const BonePiece & piece, const PlaneField & plane) co
       allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumDistance, -9.0, 9.0));
     }
   }
-  SmoothField(field, 1.5);
-  SmoothField(weight, 1.5);
+  SmoothField(field, 1.2);
+  SmoothField(weight, 1.2);
   for (std::size_t n = 0; n < field.values.size(); ++n)
   {
     field.values[n] /= std::max(weight.values[n], 1e-3F);

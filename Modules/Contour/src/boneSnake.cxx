@@ -384,45 +384,44 @@ BoneEdges::Flow(const Vector2 & q) const
 bool
 BoneEdges::FindEdge(const Vector2 & q, const Vector2 & outward, double reach, double & offset, double & slope) const
 {
-  const double step = 0.25 * this->GetPixel();
-  const int    count = std::max(2, static_cast<int>(std::ceil(reach / step)));
-  const double width = reach / 1.5;
-  double       best = 0.0;
-  double       values[3] = { 0.0, 0.0, 0.0 }; // falls before, at and after the best place
-  double       before = 0.0;
-  double       here = 0.0;
-  double       low = m_Image.SampleCubic(q - (count + 1.5) * step * outward);
-  bool         found = false;
-  for (int k = -count - 1; k <= count + 1; ++k)
+  // The fall is measured over a pixel: between the image's nodes the interpolant's own slope ripples.
+  constexpr int       half = 2;
+  const double        step = 0.25 * this->GetPixel();
+  const int           count = std::max(2, static_cast<int>(std::ceil(reach / step)));
+  const double        width = reach / 1.5;
+  std::vector<double> fall;
   {
-    // Fall between k - 1/2 and k + 1/2.
-    const double high = m_Image.SampleCubic(q + (k + 0.5) * step * outward);
-    const double after = (low - high) / step;
-    low = high;
-    const double at = (k - 1) * step; // the place of `here`
-    if (k > -count && here >= before && here >= after && here > m_MinimumSlope)
+    std::vector<double> values;
+    for (int k = -count - 1 - half; k <= count + 1 + half; ++k)
     {
-      const double score = here * std::exp(-0.5 * at * at / (width * width));
-      if (score > best)
-      {
-        best = score;
-        values[0] = before;
-        values[1] = here;
-        values[2] = after;
-        offset = at;
-        slope = here;
-        found = true;
-      }
+      values.push_back(m_Image.SampleCubic(q + k * step * outward));
     }
-    before = here;
-    here = after;
+    for (std::size_t k = 0; k + 2 * half < values.size(); ++k)
+    {
+      fall.push_back((values[k] - values[k + 2 * half]) / (2 * half * step));
+    }
   }
-  const double bend = values[0] - 2.0 * values[1] + values[2];
-  if (found && bend < 0.0)
+  std::size_t found = 0;
+  double      best = 0.0;
+  for (std::size_t k = 1; k + 1 < fall.size(); ++k)
   {
-    offset = std::clamp(offset + 0.5 * step * (values[0] - values[2]) / bend, -reach, reach);
+    const double at = (static_cast<int>(k) - count - 1) * step;
+    const double score = fall[k] * std::exp(-0.5 * at * at / (width * width));
+    if (fall[k] > m_MinimumSlope && fall[k] >= fall[k - 1] && fall[k] >= fall[k + 1] && score > best)
+    {
+      best = score;
+      found = k;
+    }
   }
-  return found;
+  if (found == 0)
+  {
+    return false;
+  }
+  const double bend = fall[found - 1] - 2.0 * fall[found] + fall[found + 1];
+  const double shift = bend < 0.0 ? 0.5 * step * (fall[found - 1] - fall[found + 1]) / bend : 0.0;
+  offset = std::clamp((static_cast<int>(found) - count - 1) * step + shift, -reach, reach);
+  slope = fall[found];
+  return true;
 }
 
 SnakeResult
