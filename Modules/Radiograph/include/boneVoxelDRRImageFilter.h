@@ -90,7 +90,7 @@ private:
   RegionType
   FindRegion() const;
   /** Converted values of a region, 0 where the mask is not. */
-  VoxelGrid
+  VoxelVolume
   CopyGrid(const RegionType & region, const ParallelFor & parallelFor) const;
 
   MaskPixelType m_MaskLabel{ 0 };

@@ -82,7 +82,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::FindRegion() const -
 }
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>
-VoxelGrid
+VoxelVolume
 VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const RegionType &  region,
                                                                      const ParallelFor & parallelFor) const
 {
@@ -92,7 +92,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
   const typename TInputImage::SpacingType spacing = image->GetSpacing();
   image->TransformIndexToPhysicalPoint(region.GetIndex(), origin);
 
-  VoxelGrid grid;
+  VoxelVolume grid;
   for (int k = 0; k < 3; ++k)
   {
     grid.size[k] = static_cast<int>(region.GetSize(k));

@@ -12,7 +12,7 @@
 namespace bone
 {
 /** Values on a regular grid in space; the first axis runs fastest. */
-struct VoxelGrid
+struct VoxelVolume
 {
   std::vector<float> values;
   std::array<int, 3> size{ { 0, 0, 0 } };
@@ -28,7 +28,7 @@ struct VoxelGrid
  * border, the source or the pixel, so that a constant image gives exact chords. `image` receives rows x columns values,
  * row by row, in the grid's unit times mm. The result does not depend on how `loops` run. */
 void
-ProjectVoxels(const VoxelGrid & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image);
+ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image);
 } // namespace bone
 
 #endif

@@ -36,7 +36,7 @@ struct Axis
 class VoxelProjector
 {
 public:
-  VoxelProjector(const VoxelGrid & grid, const XRayGeometry::View & view)
+  VoxelProjector(const VoxelVolume & grid, const XRayGeometry::View & view)
     : m_Values(grid.values.data())
     , m_Frame(view)
     , m_ToIndex(grid.axes.inverse())
@@ -143,7 +143,7 @@ VoxelProjector::Integrate(int column, int row) const
 } // namespace
 
 void
-ProjectVoxels(const VoxelGrid & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image)
+ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image)
 {
   const VoxelProjector projector(grid, view);
   loops.draw(view.size[1], [&](std::size_t row) {

@@ -89,7 +89,7 @@ Walk(benchmark::State & state)
 void
 Voxels(benchmark::State & state)
 {
-  VoxelGrid grid;
+  VoxelVolume grid;
   grid.size = { { 270, 270, 270 } };
   grid.values.assign(270 * 270 * 270, 1.0f);
   grid.origin = Vector3(-50, -50, -75);
