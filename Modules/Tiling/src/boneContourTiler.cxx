@@ -214,10 +214,16 @@ private:
     }
     if (WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, low, high))
     {
-      throw std::runtime_error(
+      std::vector<PieceId> layered;
+      for (const Group & group : m_Groups[k])
+      {
+        const auto pieces = LayeredPieces(k, group);
+        layered.insert(layered.end(), pieces.begin(), pieces.end());
+      }
+      throw SlabFailure(
         "slice " + std::to_string(k) +
-        ": surfaces of neighbouring pieces cross on the way to the next slice; use a smaller slice "
-        "step");
+          ": surfaces of neighbouring pieces cross on the way to the next slice; use a smaller slice step",
+        layered);
     }
   }
 
