@@ -40,6 +40,35 @@ struct ExtractionReport
   std::vector<std::string> warnings;
 };
 
+/** Heights of an image's slices along the stack's normal, mm. */
+struct SliceRange
+{
+  double first{ 0.0 };
+  double step{ 1.0 };
+  int    count{ 0 };
+
+  double
+  Top() const
+  {
+    return first + (count - 1) * step;
+  }
+};
+
+/** Empty sections for a bone between the heights `low` and `high`: on the image's slices, or, for a `step` above 0, at
+ * the largest even distance not above it with which the first and the last fall on `low` and `high`. Never off the
+ * image.
+ */
+std::vector<BoneSection>
+PlaceSections(const SliceRange & slices, double low, double high, double step);
+
+/** Empty sections through the whole image, on its slices, or `step` above 0 apart with one at the height `anchor`. */
+std::vector<BoneSection>
+PlaceSectionsThrough(const SliceRange & slices, double anchor, double step);
+
+/** The highest value of the CT in the pieces' bounding boxes; the search ends with a value that reaches `enough`. */
+double
+BrightestWithin(const std::vector<BoneSection> & sections, const PlaneSource & planes, double enough);
+
 /** Moves the periosteal contours of sections, as they come from a label, to the CT's edges within
  * `parameters.refineDistance`. A slice where that makes contours cross keeps those it had, and its report says so. */
 void

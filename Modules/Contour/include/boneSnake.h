@@ -92,8 +92,10 @@ public:
   }
 
 private:
+  PlaneField
+  EdgeMap(const std::vector<Polygon> & start) const;
   void
-  ComputeFlow(const std::vector<Polygon> & start);
+  ComputeFlow(const PlaneField & map);
 
   PlaneField m_Image;
   double     m_MinimumSlope;

@@ -169,8 +169,7 @@ private:
     Vector3      normal;
     Vector2      origin; ///< of the buffer's first voxel, plane coordinates
     Vector2      pixel;  ///< mm
-    double       first;  ///< height of the first slice
-    double       step;   ///< mm
+    SliceRange   slices;
     int          size[3];
   };
 
@@ -183,19 +182,23 @@ private:
   ExtractionParameters
   MakeParameters(const Frame & frame) const;
 
+  bool
+  HasLabel(short value) const
+  {
+    return m_Label != 0 ? value == m_Label : value != 0;
+  }
+  /** The label's bounding box, and the heights of its lowest and highest voxel. */
+  typename LabelImageType::RegionType
+  FindLabel(const Frame & frame, double & low, double & high) const;
   /** The label's bounding box with a margin, and which of its voxels have the label. */
   VoxelBox
   CropLabel(std::vector<unsigned char> & inside, const Frame & frame, double & low, double & high) const;
-  std::vector<BoneSection>
-  PlaceSections(const Frame & frame, double low, double high, double anchor) const;
   std::vector<BoneSection>
   SectionsFromLabel(const Frame & frame, const ExtractionParameters & parameters, const ParallelFor & parallel);
   std::vector<BoneSection>
   SectionsFromContours(const Frame & frame) const;
   void
   InsertInitialContours(const Frame & frame, std::vector<BoneSection> & sections) const;
-  void
-  CheckDensity(const std::vector<BoneSection> & sections, const PlaneSource & planes) const;
   void
   SetOpenEnds(const Frame & frame, const std::vector<BoneSection> & sections);
   void

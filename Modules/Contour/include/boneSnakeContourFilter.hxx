@@ -187,13 +187,14 @@ SnakeContourFilter<TInputImage, TContourStack>::MakeFrame() const -> Frame
   image->TransformIndexToPhysicalPoint(region.GetIndex(), corner);
   const Vector3 origin(corner[0], corner[1], corner[2]);
   frame.origin = { origin.dot(frame.u), origin.dot(frame.v) };
-  frame.first = origin.dot(frame.normal);
+  frame.slices.first = origin.dot(frame.normal);
   frame.pixel = { image->GetSpacing()[frame.axes[0]], image->GetSpacing()[frame.axes[1]] };
-  frame.step = image->GetSpacing()[m_Axis];
+  frame.slices.step = image->GetSpacing()[m_Axis];
   for (unsigned int a = 0; a < 3; ++a)
   {
     frame.size[a] = static_cast<int>(region.GetSize()[frame.axes[a]]);
   }
+  frame.slices.count = frame.size[2];
   return frame;
 }
 
@@ -206,7 +207,7 @@ SnakeContourFilter<TInputImage, TContourStack>::MakePlaneSource(const Frame & fr
   const itk::OffsetValueType stride[3] = { table[frame.axes[0]], table[frame.axes[1]], table[frame.axes[2]] };
   return [frame, buffer, stride0 = stride[0], stride1 = stride[1], stride2 = stride[2]](
            double height, const Vector2 & low, const Vector2 & high) {
-    const double z = std::clamp((height - frame.first) / frame.step, 0.0, frame.size[2] - 1.0);
+    const double z = std::clamp((height - frame.slices.first) / frame.slices.step, 0.0, frame.size[2] - 1.0);
     const int    k = std::min(static_cast<int>(z + 1e-6), frame.size[2] - 2);
     const double t = std::abs(z - k) < 1e-6 ? 0.0 : z - k;
     int          begin[2];
@@ -274,26 +275,21 @@ SnakeContourFilter<TInputImage, TContourStack>::MakeParameters(const Frame & fra
 }
 
 template <typename TInputImage, typename TContourStack>
-VoxelBox
-SnakeContourFilter<TInputImage, TContourStack>::CropLabel(std::vector<unsigned char> & inside,
-                                                          const Frame &                frame,
-                                                          double &                     low,
-                                                          double &                     high) const
+auto
+SnakeContourFilter<TInputImage, TContourStack>::FindLabel(const Frame & frame, double & low, double & high) const ->
+  typename LabelImageType::RegionType
 {
   const LabelImageType * labels = this->GetLabelImage();
-  const auto             region = labels->GetBufferedRegion();
-  const short            wanted = static_cast<short>(m_Label);
-  const auto             hasLabel = [wanted](short value) { return wanted != 0 ? value == wanted : value != 0; };
-  using Iterator = itk::ImageRegionConstIteratorWithIndex<LabelImageType>;
-  itk::Index<3> first;
-  itk::Index<3> last;
+  itk::Index<3>          first;
+  itk::Index<3>          last;
   first.Fill(std::numeric_limits<itk::IndexValueType>::max());
   last.Fill(std::numeric_limits<itk::IndexValueType>::min());
   low = std::numeric_limits<double>::max();
   high = -low;
-  for (Iterator it(labels, region); !it.IsAtEnd(); ++it)
+  using Iterator = itk::ImageRegionConstIteratorWithIndex<LabelImageType>;
+  for (Iterator it(labels, labels->GetBufferedRegion()); !it.IsAtEnd(); ++it)
   {
-    if (!hasLabel(it.Get()))
+    if (!this->HasLabel(it.Get()))
     {
       continue;
     }
@@ -311,19 +307,31 @@ SnakeContourFilter<TInputImage, TContourStack>::CropLabel(std::vector<unsigned c
   if (first[0] > last[0])
   {
     itkExceptionMacro("The label image has no voxel "
-                      << (wanted != 0 ? "of label " + std::to_string(m_Label) : std::string("that is not 0")) << '.');
+                      << (m_Label != 0 ? "of label " + std::to_string(m_Label) : std::string("that is not 0")) << '.');
   }
-  VoxelBox                      box;
-  LabelImageType::RegionType    crop;
-  constexpr itk::IndexValueType margin = 4;
+  LabelImageType::RegionType region;
   for (unsigned int a = 0; a < 3; ++a)
   {
-    const itk::IndexValueType begin = region.GetIndex()[a];
-    const itk::IndexValueType end = begin + static_cast<itk::IndexValueType>(region.GetSize()[a]) - 1;
-    first[a] = std::max(begin, first[a] - margin);
-    last[a] = std::min(end, last[a] + margin);
-    crop.SetIndex(a, first[a]);
-    crop.SetSize(a, static_cast<itk::SizeValueType>(last[a] - first[a] + 1));
+    region.SetIndex(a, first[a]);
+    region.SetSize(a, static_cast<itk::SizeValueType>(last[a] - first[a] + 1));
+  }
+  return region;
+}
+
+template <typename TInputImage, typename TContourStack>
+VoxelBox
+SnakeContourFilter<TInputImage, TContourStack>::CropLabel(std::vector<unsigned char> & inside,
+                                                          const Frame &                frame,
+                                                          double &                     low,
+                                                          double &                     high) const
+{
+  const LabelImageType * labels = this->GetLabelImage();
+  auto                   crop = this->FindLabel(frame, low, high);
+  crop.PadByRadius(4);
+  crop.Crop(labels->GetBufferedRegion());
+  VoxelBox box;
+  for (unsigned int a = 0; a < 3; ++a)
+  {
     box.size[a] = static_cast<int>(crop.GetSize(a));
     box.spacing[a] = labels->GetSpacing()[a];
     for (unsigned int r = 0; r < 3; ++r)
@@ -332,50 +340,15 @@ SnakeContourFilter<TInputImage, TContourStack>::CropLabel(std::vector<unsigned c
     }
   }
   LabelImageType::PointType corner;
-  labels->TransformIndexToPhysicalPoint(first, corner);
+  labels->TransformIndexToPhysicalPoint(crop.GetIndex(), corner);
   box.origin = { corner[0], corner[1], corner[2] };
   inside.clear();
   inside.reserve(box.Count());
-  for (Iterator it(labels, crop); !it.IsAtEnd(); ++it)
+  for (itk::ImageRegionConstIteratorWithIndex<LabelImageType> it(labels, crop); !it.IsAtEnd(); ++it)
   {
-    inside.push_back(hasLabel(it.Get()));
+    inside.push_back(this->HasLabel(it.Get()));
   }
   return box;
-}
-
-// Empty sections from `low` to `high` as far as the image goes; with a step and an anchor, through the anchor.
-template <typename TInputImage, typename TContourStack>
-std::vector<BoneSection>
-SnakeContourFilter<TInputImage, TContourStack>::PlaceSections(const Frame & frame,
-                                                              double        low,
-                                                              double        high,
-                                                              double        anchor) const
-{
-  const double top = frame.first + (frame.size[2] - 1) * frame.step;
-  const double slack = 1e-6 * frame.step;
-  double       start = frame.first;
-  double       step = frame.step;
-  low = std::max(low, frame.first);
-  high = std::min(high, top);
-  if (m_SliceStep > 0.0)
-  {
-    const bool   anchored = std::isfinite(anchor);
-    const double pieces = std::max(1.0, std::ceil((high - low - slack) / m_SliceStep));
-    step = anchored ? m_SliceStep : (high - low) / pieces;
-    start = anchored ? anchor - m_SliceStep * std::floor((anchor - low + slack) / m_SliceStep) : low;
-    step = step > 0.0 ? step : m_SliceStep;
-  }
-  else
-  {
-    start += step * std::floor((low - start) / step + 0.5 - 1e-6);
-    high = std::min(high + 0.5 * step - slack, top);
-  }
-  std::vector<BoneSection> sections;
-  for (int k = 0; start + k * step <= high + slack; ++k)
-  {
-    sections.push_back({ start + k * step, {} });
-  }
-  return sections;
 }
 
 template <typename TInputImage, typename TContourStack>
@@ -398,7 +371,7 @@ SnakeContourFilter<TInputImage, TContourStack>::SectionsFromLabel(const Frame & 
     corners[0].push_back({ corner.dot(frame.u), corner.dot(frame.v) });
   }
   const PlaneGrid grid = CoveringGrid(corners, 0.0, frame.origin, frame.pixel);
-  auto            sections = this->PlaceSections(frame, low, high, std::numeric_limits<double>::quiet_NaN());
+  auto            sections = PlaceSections(frame.slices, low, high, m_SliceStep);
   if (sections.empty())
   {
     itkExceptionMacro("The label lies beyond the CT's slices; are both images of the same space?");
@@ -434,8 +407,7 @@ SnakeContourFilter<TInputImage, TContourStack>::SectionsFromContours(const Frame
   {
     itkExceptionMacro("The initial contours are empty.");
   }
-  constexpr double huge = 1e12;
-  return this->PlaceSections(frame, -huge, huge, anchor);
+  return PlaceSectionsThrough(frame.slices, anchor, m_SliceStep);
 }
 
 // Gives each drawn contour to the section nearest to it.
@@ -475,7 +447,7 @@ SnakeContourFilter<TInputImage, TContourStack>::InsertInitialContours(const Fram
       }
       loops.push_back(std::move(loop));
     }
-    const double step = m_SliceStep > 0.0 ? m_SliceStep : frame.step;
+    const double step = m_SliceStep > 0.0 ? m_SliceStep : frame.slices.step;
     if (!loops.empty() && !(std::abs(section->height - height) <= step))
     {
       itkExceptionMacro("An initial contour at " << height << " mm along axis " << m_Axis
@@ -493,36 +465,12 @@ SnakeContourFilter<TInputImage, TContourStack>::InsertInitialContours(const Fram
 
 template <typename TInputImage, typename TContourStack>
 void
-SnakeContourFilter<TInputImage, TContourStack>::CheckDensity(const std::vector<BoneSection> & sections,
-                                                             const PlaneSource &              planes) const
-{
-  float brightest = std::numeric_limits<float>::lowest();
-  for (const BoneSection & section : sections)
-  {
-    for (const BonePiece & piece : section.pieces)
-    {
-      const PlaneGrid  box = CoveringGrid({ piece.outer }, 0.0, Vector2::Zero(), Vector2::Ones());
-      const PlaneField plane = planes(section.height, box.origin, box.Node(box.size[0] - 1, box.size[1] - 1));
-      brightest = std::max(brightest, *std::max_element(plane.values.begin(), plane.values.end()));
-      if (brightest >= m_BoneThreshold)
-      {
-        return;
-      }
-    }
-  }
-  itkExceptionMacro("The CT holds no bone: within the contours its highest value is "
-                    << brightest << ", below BoneThreshold (" << m_BoneThreshold
-                    << "). Do the CT and its start belong together?");
-}
-
-template <typename TInputImage, typename TContourStack>
-void
 SnakeContourFilter<TInputImage, TContourStack>::SetOpenEnds(const Frame &                    frame,
                                                             const std::vector<BoneSection> & sections)
 {
-  const double top = frame.first + (frame.size[2] - 1) * frame.step;
-  const double slack = 0.5 * frame.step;
-  const bool   start = sections.front().height < frame.first + slack;
+  const double top = frame.slices.Top();
+  const double slack = 0.5 * frame.slices.step;
+  const bool   start = sections.front().height < frame.slices.first + slack;
   const bool   end = sections.back().height > top - slack;
   this->GetOutput()->SetOpenStart(start);
   this->GetOutput()->SetOpenEnd(end);
@@ -581,7 +529,13 @@ SnakeContourFilter<TInputImage, TContourStack>::GenerateData()
     this->InsertInitialContours(frame, sections);
   }
   this->ReportProgress(0.4F);
-  this->CheckDensity(sections, planes);
+  const double brightest = BrightestWithin(sections, planes, m_BoneThreshold);
+  if (!(brightest >= m_BoneThreshold))
+  {
+    itkExceptionMacro("The CT holds no bone: within the contours its highest value is "
+                      << brightest << ", below BoneThreshold (" << m_BoneThreshold
+                      << "). Do the CT and its start belong together?");
+  }
   if (!labelled)
   {
     PropagateSections(sections, planes, frame.pixel, parameters, parallel, m_Report);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace bone
@@ -204,7 +205,64 @@ private:
   Vector2                      m_Pixel;
   const ExtractionParameters & m_Parameters;
 };
+
+std::vector<BoneSection>
+EvenSections(double first, double step, double last, double slack)
+{
+  std::vector<BoneSection> sections;
+  for (int k = 0; first + k * step <= last + slack; ++k)
+  {
+    sections.push_back({ first + k * step, {} });
+  }
+  return sections;
+}
 } // namespace
+
+std::vector<BoneSection>
+PlaceSections(const SliceRange & slices, double low, double high, double step)
+{
+  const double slack = 1e-6 * slices.step;
+  low = std::max(low, slices.first);
+  high = std::min(high, slices.Top());
+  if (step > 0.0)
+  {
+    const double parts = std::max(1.0, std::ceil((high - low - slack) / step));
+    return EvenSections(low, high > low ? (high - low) / parts : step, high, slack);
+  }
+  const double first = slices.first + slices.step * std::floor((low - slices.first) / slices.step + 0.5 - 1e-6);
+  return EvenSections(first, slices.step, std::min(high + 0.5 * slices.step - slack, slices.Top()), slack);
+}
+
+std::vector<BoneSection>
+PlaceSectionsThrough(const SliceRange & slices, double anchor, double step)
+{
+  const double slack = 1e-6 * slices.step;
+  if (!(step > 0.0))
+  {
+    return EvenSections(slices.first, slices.step, slices.Top(), slack);
+  }
+  const double first = anchor - step * std::floor((anchor - slices.first + slack) / step);
+  return EvenSections(first, step, slices.Top(), slack);
+}
+
+double
+BrightestWithin(const std::vector<BoneSection> & sections, const PlaneSource & planes, double enough)
+{
+  double brightest = std::numeric_limits<double>::lowest();
+  for (const BoneSection & section : sections)
+  {
+    for (const BonePiece & piece : section.pieces)
+    {
+      const PlaneField plane = PlaneAround({ piece.outer }, section.height, 0.0, planes);
+      brightest = std::max<double>(brightest, *std::max_element(plane.values.begin(), plane.values.end()));
+      if (brightest >= enough)
+      {
+        return brightest;
+      }
+    }
+  }
+  return brightest;
+}
 
 void
 RefineSections(std::vector<BoneSection> &   sections,

@@ -27,6 +27,43 @@ OutwardNormal(const Polygon & contour, std::size_t i)
   return length > 0.0 ? Vector2(normal / length) : Vector2::Zero();
 }
 
+// Central differences at an inner node.
+Vector2
+SlopeAt(const PlaneField & f, int i, int j)
+{
+  const PlaneGrid & grid = f.grid;
+  return { (f.values[grid.Offset(i + 1, j)] - f.values[grid.Offset(i - 1, j)]) / (2.0 * grid.spacing.x()),
+           (f.values[grid.Offset(i, j + 1)] - f.values[grid.Offset(i, j - 1)]) / (2.0 * grid.spacing.y()) };
+}
+
+// Spreads a component of the edges' gradient: diffusion, held to the data where that has weight.
+void
+Diffuse(PlaneField & flow, const std::vector<float> & weight)
+{
+  const PlaneGrid &        grid = flow.grid;
+  const double             pixel = grid.spacing.minCoeff();
+  const float              wx = static_cast<float>(FlowSmoothness * std::pow(pixel / grid.spacing.x(), 2));
+  const float              wy = static_cast<float>(FlowSmoothness * std::pow(pixel / grid.spacing.y(), 2));
+  const auto               row = static_cast<std::ptrdiff_t>(grid.size[0]);
+  const std::vector<float> data = flow.values;
+  std::vector<float>       next = data;
+  for (int iteration = 0; iteration < FlowIterations; ++iteration)
+  {
+    for (int j = 1; j + 1 < grid.size[1]; ++j)
+    {
+      const std::size_t first = grid.Offset(1, j);
+      const float *     v = flow.values.data() + first;
+      for (std::ptrdiff_t i = 0; i + 2 < row; ++i)
+      {
+        const std::size_t n = first + static_cast<std::size_t>(i);
+        next[n] = v[i] + wx * (v[i - 1] + v[i + 1] - 2.0F * v[i]) + wy * (v[i - row] + v[i + row] - 2.0F * v[i]) -
+                  weight[n] * (v[i] - data[n]);
+      }
+    }
+    flow.values.swap(next);
+  }
+}
+
 double
 Perimeter(const Polygon & polygon)
 {
@@ -292,84 +329,75 @@ BoneEdges::BoneEdges(const PlaneField & image, const std::vector<Polygon> & star
   , m_MinimumSlope(minimumSlope)
 {
   SmoothField(m_Image, sigma);
-  this->ComputeFlow(start);
+  this->ComputeFlow(this->EdgeMap(start));
 }
 
-void
-BoneEdges::ComputeFlow(const std::vector<Polygon> & start)
+// Slopes that rise towards the inside of the start contours, the strongest tenth being 1; empty without any.
+PlaneField
+BoneEdges::EdgeMap(const std::vector<Polygon> & start) const
 {
-  const PlaneGrid &  grid = m_Image.grid;
+  const PlaneGrid & grid = m_Image.grid;
+  PlaneField        map{ grid, {} };
+  if (start.empty())
+  {
+    return map;
+  }
   const PlaneField   inside = ComputeDistanceField(start, grid).distance;
-  std::vector<float> edge(grid.Count(), 0.0F);
-  const auto         slope = [&grid](const PlaneField & f, int i, int j) {
-    return Vector2((f.values[grid.Offset(i + 1, j)] - f.values[grid.Offset(i - 1, j)]) / (2.0 * grid.spacing.x()),
-                   (f.values[grid.Offset(i, j + 1)] - f.values[grid.Offset(i, j - 1)]) / (2.0 * grid.spacing.y()));
-  };
   std::vector<float> strengths;
+  map.values.assign(grid.Count(), 0.0F);
   for (int j = 1; j + 1 < grid.size[1]; ++j)
   {
     for (int i = 1; i + 1 < grid.size[0]; ++i)
     {
-      const Vector2 inward = slope(inside, i, j);
+      const Vector2 inward = SlopeAt(inside, i, j);
       const double  length = inward.norm();
-      const double  rise = length > 0.0 ? slope(m_Image, i, j).dot(inward) / length : 0.0;
+      const double  rise = length > 0.0 ? SlopeAt(m_Image, i, j).dot(inward) / length : 0.0;
       if (rise > m_MinimumSlope)
       {
-        edge[grid.Offset(i, j)] = static_cast<float>(rise);
+        map.values[grid.Offset(i, j)] = static_cast<float>(rise);
         strengths.push_back(static_cast<float>(rise));
       }
     }
   }
-  m_FlowX = m_FlowY = PlaneField{ grid, std::vector<float>(grid.Count(), 0.0F) };
   if (strengths.empty())
   {
-    return;
+    map.values.clear();
+    return map;
   }
   const auto high = strengths.begin() + static_cast<std::ptrdiff_t>(strengths.size() * 9 / 10);
   std::nth_element(strengths.begin(), high, strengths.end());
-  PlaneField map{ grid, edge };
   for (float & value : map.values)
   {
     value = std::min(1.0F, value / *high);
   }
-  // Where the data has its say (weight) and what it says, in pixels.
+  return map;
+}
+
+void
+BoneEdges::ComputeFlow(const PlaneField & map)
+{
+  const PlaneGrid & grid = m_Image.grid;
+  m_FlowX = m_FlowY = PlaneField{ grid, std::vector<float>(grid.Count(), 0.0F) };
+  if (map.values.empty())
+  {
+    return;
+  }
+  // What the data says, in pixels, and how much say it has.
   const double       pixel = this->GetPixel();
   std::vector<float> weight(grid.Count(), 0.0F);
   for (int j = 1; j + 1 < grid.size[1]; ++j)
   {
     for (int i = 1; i + 1 < grid.size[0]; ++i)
     {
-      const Vector2     g = pixel * slope(map, i, j);
+      const Vector2     g = pixel * SlopeAt(map, i, j);
       const std::size_t n = grid.Offset(i, j);
       m_FlowX.values[n] = static_cast<float>(g.x());
       m_FlowY.values[n] = static_cast<float>(g.y());
       weight[n] = static_cast<float>(g.squaredNorm());
     }
   }
-  const float  wx = static_cast<float>(FlowSmoothness * std::pow(pixel / grid.spacing.x(), 2));
-  const float  wy = static_cast<float>(FlowSmoothness * std::pow(pixel / grid.spacing.y(), 2));
-  const auto   row = static_cast<std::ptrdiff_t>(grid.size[0]);
-  PlaneField * flows[2] = { &m_FlowX, &m_FlowY };
-  for (PlaneField * flow : flows)
-  {
-    const std::vector<float> data = flow->values;
-    std::vector<float>       next = data;
-    for (int iteration = 0; iteration < FlowIterations; ++iteration)
-    {
-      for (int j = 1; j + 1 < grid.size[1]; ++j)
-      {
-        const std::size_t first = grid.Offset(1, j);
-        const float *     v = flow->values.data() + first;
-        for (std::ptrdiff_t i = 0; i + 2 < row; ++i)
-        {
-          const std::size_t n = first + static_cast<std::size_t>(i);
-          next[n] = v[i] + wx * (v[i - 1] + v[i + 1] - 2.0F * v[i]) + wy * (v[i - row] + v[i + row] - 2.0F * v[i]) -
-                    weight[n] * (v[i] - data[n]);
-        }
-      }
-      flow->values.swap(next);
-    }
-  }
+  Diffuse(m_FlowX, weight);
+  Diffuse(m_FlowY, weight);
 }
 
 Vector2
