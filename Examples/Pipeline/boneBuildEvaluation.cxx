@@ -98,7 +98,7 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
       report.dice = DiceOverlap(model, mask);
       report.distances = MeasureSurfaceDistances(arrays, mask);
     }
-    report.density = MeasureDensityError(evidence.ct, model, mask);
+    report.density = CompareWithImage(arrays, evidence.ct, mask);
 
     BuildPipeline::RadiographType * radiograph = pipeline.GetRadiograph(i);
     radiograph->Update();
@@ -113,9 +113,9 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
     evaluation.levels.push_back(std::move(report));
   }
 
-  const DensityError & density = evaluation.levels.front().density;
-  const double         range = density.upper - density.lower;
-  const Window         window{ density.lower - 0.3 * range, density.upper + 0.05 * range };
+  const auto   percentiles = PercentileRange(evidence.ct, mask);
+  const double range = percentiles[1] - percentiles[0];
+  const Window window{ percentiles[0] - 0.3 * range, percentiles[1] + 0.05 * range };
   evaluation.slices = DrawSlices(evidence.ct, pipeline.GetMedialAxis()->GetOutput(), window);
   const double cutScale = 0.25 * range;
   evaluation.cutPlane = DrawComparison(SamplePlane(evidence.ct, cut), "CT", cuts, window, cutScale, "HU");

@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneBuildReport.h"
 
-#include "boneBernstein.h"
 #include "boneMeshValidator.h"
 
 #include <itkMath.h>
@@ -101,8 +100,8 @@ ToJson(const LevelReport & level)
   json["densityError"] = { { "voxels", level.density.voxels },
                            { "meanAbsolute", level.density.meanAbsolute },
                            { "bias", level.density.bias },
-                           { "range1To99", level.density.upper - level.density.lower },
-                           { "percentOfRange", level.density.Percent() } };
+                           { "range1To99", level.density.range },
+                           { "percentOfRange", level.density.meanAbsolutePercent } };
   json["radiographDifferencePercent"] = level.radiographPercent;
   json["toLevel1"] = { { "densityErrorRms", level.densityErrorToLevel1 },
                        { "surfaceErrorMm", level.surfaceErrorToLevel1 },
@@ -117,18 +116,12 @@ DescribeLevel(const MeshArrays & mesh)
   LevelReport report;
   report.points = mesh.points.size();
   report.tetrahedra = mesh.tetrahedra.size();
-  const std::size_t width = mesh.HasDensity() ? static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree)) : 0;
-  double            mass = 0.0;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  double mass = 0.0;
+  for (const RegionDensity & region : MeasureRegions(mesh))
   {
-    const Id4 &  c = mesh.tetrahedra[t];
-    const double volume = SignedVolume(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]);
-    report.volume += volume;
-    report.regionVolumes[mesh.region.empty() ? 0 : mesh.region[t]] += volume;
-    if (mesh.HasDensity())
-    {
-      mass += BernsteinIntegral(mesh.degree[t], mesh.coefficients.data() + t * width, volume);
-    }
+    report.regionVolumes[region.region] = region.volume;
+    report.volume += region.volume;
+    mass += region.mass;
   }
   report.meanDensity = report.volume > 0.0 ? mass / report.volume : 0.0;
   report.dihedral = SummarizeQuality(mesh, QualityMeasure::MinimumDihedralAngle);
@@ -162,7 +155,9 @@ ToText(const BuildReport & report)
   });
   WriteSurfaceRows(os, report);
   Row(os, report, "mean density", [](const LevelReport & l) { return Fixed(l.meanDensity, 1); });
-  Row(os, report, "density error (% of range)", [](const LevelReport & l) { return Fixed(l.density.Percent(), 2); });
+  Row(os, report, "density error (% of range)", [](const LevelReport & l) {
+    return Fixed(l.density.meanAbsolutePercent, 2);
+  });
   Row(os, report, "radiograph difference (%)", [](const LevelReport & l) { return Fixed(l.radiographPercent, 2); });
   os << "\nseconds:";
   double total = 0.0;

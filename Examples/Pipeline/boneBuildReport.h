@@ -33,7 +33,7 @@ struct LevelReport
 
   std::optional<double>           dice;      ///< with a label map only
   std::optional<SurfaceDistances> distances; ///< with a label map only
-  DensityError                    density;
+  DensityComparison               density;
   double                          radiographPercent{ 0.0 };
 };
 

@@ -154,35 +154,31 @@ MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask)
   return distances;
 }
 
-DensityError
-MeasureDensityError(const CTImage * ct, const CTImage * model, const LabelImage * mask)
+DensityComparison
+CompareWithImage(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask)
+{
+  const float * density = ct->GetBufferPointer();
+  const short * inside = mask->GetBufferPointer();
+  return CompareDensity(
+    mesh, MakeVoxelGrid(*ct, ct->GetBufferedRegion()), [density, inside](std::size_t offset, double & value) {
+      value = density[offset];
+      return inside[offset] != 0;
+    });
+}
+
+std::array<double, 2>
+PercentileRange(const CTImage * ct, const LabelImage * mask)
 {
   const std::size_t   count = ct->GetLargestPossibleRegion().GetNumberOfPixels();
-  const float *       c = ct->GetBufferPointer();
-  const float *       m = model->GetBufferPointer();
-  const short *       l = mask == nullptr ? nullptr : mask->GetBufferPointer();
-  DensityError        error;
-  std::vector<double> truth;
-  double              absolute = 0.0;
-  double              bias = 0.0;
+  std::vector<double> values;
   for (std::size_t k = 0; k < count; ++k)
   {
-    if (!std::isnan(m[k]) && (l == nullptr || l[k] != 0))
+    if (mask->GetBufferPointer()[k] != 0)
     {
-      truth.push_back(c[k]);
-      absolute += std::abs(m[k] - c[k]);
-      bias += m[k] - c[k];
+      values.push_back(ct->GetBufferPointer()[k]);
     }
   }
-  error.voxels = truth.size();
-  if (!truth.empty())
-  {
-    error.meanAbsolute = absolute / static_cast<double>(truth.size());
-    error.bias = bias / static_cast<double>(truth.size());
-    error.lower = Percentile(truth, 0.01);
-    error.upper = Percentile(truth, 0.99);
-  }
-  return error;
+  return { { Percentile(values, 0.01), Percentile(values, 0.99) } };
 }
 
 double

@@ -5,7 +5,7 @@
 #define boneMeshImageMetrics_h
 
 #include "boneImageIO.h"
-#include "boneMeshArrays.h"
+#include "boneDensityEvaluation.h"
 
 namespace bone
 {
@@ -37,26 +37,13 @@ struct SurfaceDistances
 SurfaceDistances
 MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask);
 
-/** Density of the model against that of the CT, over the voxels that lie in the model and in the mask (null: all in the
- * model). */
-struct DensityError
-{
-  std::size_t voxels{ 0 };
-  double      meanAbsolute{ 0.0 }; ///< units of the CT
-  double      bias{ 0.0 };         ///< mean of model - CT
-  double      lower{ 0.0 };        ///< 1st percentile of the CT
-  double      upper{ 0.0 };        ///< 99th percentile of the CT
+/** Density of the model against that of the CT, over the voxels that lie in the model and in the mask. */
+DensityComparison
+CompareWithImage(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask);
 
-  /** Mean absolute error in percent of the range between the percentiles. */
-  double
-  Percent() const
-  {
-    return upper > lower ? 100.0 * meanAbsolute / (upper - lower) : 0.0;
-  }
-};
-
-DensityError
-MeasureDensityError(const CTImage * ct, const CTImage * model, const LabelImage * mask);
+/** 1st and 99th percentile of the image in the mask. */
+std::array<double, 2>
+PercentileRange(const CTImage * ct, const LabelImage * mask);
 
 /** Mean absolute difference of two radiographs of one geometry over the pixels where the reference is not 0, in percent
  * of the reference's 1..99 % range there. */

@@ -1,0 +1,177 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneBoneImage.h"
+#include "boneCanvas.h"
+#include "boneMeshImageMetrics.h"
+#include "bonePlaneView.h"
+#include "boneResolution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+/** Label 3 in the voxels [4, 10) x [5, 9) x [6, 12) of a grid of 0.5 x 1 x 2 mm. */
+bone::LabelImage::Pointer
+MakeBox()
+{
+  auto                          labels = bone::LabelImage::New();
+  bone::LabelImage::SizeType    size = { { 16, 14, 18 } };
+  bone::LabelImage::SpacingType spacing;
+  spacing[0] = 0.5;
+  spacing[1] = 1.0;
+  spacing[2] = 2.0;
+  labels->SetRegions(size);
+  labels->SetSpacing(spacing);
+  labels->Allocate(true);
+  for (int z = 6; z < 12; ++z)
+  {
+    for (int y = 5; y < 9; ++y)
+    {
+      for (int x = 4; x < 10; ++x)
+      {
+        labels->SetPixel({ { x, y, z } }, 3);
+      }
+    }
+  }
+  return labels;
+}
+
+/** The box that the labels of MakeBox fill, moved along x, as six tetrahedra. */
+bone::MeshArrays
+MakeBoxMesh(double shift)
+{
+  const bone::Vector3 lower(1.75 + shift, 4.5, 11.0);
+  const bone::Vector3 size(3.0, 4.0, 12.0);
+  bone::MeshArrays    mesh;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    mesh.points.push_back(
+      lower + bone::Vector3(corner & 1 ? size.x() : 0.0, corner & 2 ? size.y() : 0.0, corner & 4 ? size.z() : 0.0));
+  }
+  mesh.tetrahedra = { { { 0, 1, 3, 7 } }, { { 0, 3, 2, 7 } }, { { 0, 2, 6, 7 } },
+                      { { 0, 6, 4, 7 } }, { { 0, 4, 5, 7 } }, { { 0, 5, 1, 7 } } };
+  mesh.neighbors = bone::ComputeFaceNeighbors(mesh.tetrahedra);
+  return mesh;
+}
+} // namespace
+
+TEST(BoneImage, MeasuresABox)
+{
+  const auto             labels = MakeBox();
+  const bone::BoneExtent extent = bone::MeasureLabel(labels, 3);
+  EXPECT_EQ(extent.voxels, 6U * 4U * 6U);
+  EXPECT_DOUBLE_EQ(extent.volume, 3.0 * 4.0 * 12.0);
+  EXPECT_NEAR(extent.surface, 2.0 / 3.0 * 2.0 * (3.0 * 4.0 + 4.0 * 12.0 + 3.0 * 12.0), 1e-9);
+  EXPECT_FALSE(extent.leavesImage);
+  EXPECT_EQ(extent.region.GetIndex(2), 6);
+  EXPECT_EQ(extent.region.GetSize(2), 6U);
+  EXPECT_EQ(bone::MeasureLabel(labels, 0).voxels, extent.voxels);
+  EXPECT_THROW(bone::MeasureLabel(labels, 2), itk::ExceptionObject);
+}
+
+TEST(BoneImage, CroppedImageStaysInPlace)
+{
+  const auto                        labels = MakeBox();
+  const auto                        region = bone::MeasureLabel(labels, 3).region;
+  const auto                        cropped = bone::Crop(labels, region);
+  bone::LabelImage::PointType       before;
+  bone::LabelImage::PointType       after;
+  const bone::LabelImage::IndexType first = cropped->GetLargestPossibleRegion().GetIndex();
+  labels->TransformIndexToPhysicalPoint(region.GetIndex(), before);
+  cropped->TransformIndexToPhysicalPoint(first, after);
+  EXPECT_LT(before.EuclideanDistanceTo(after), 1e-12);
+  EXPECT_EQ(cropped->GetPixel(first), 3);
+}
+
+TEST(BoneImage, AnotherGridIsRefused)
+{
+  auto ct = bone::CTImage::New();
+  ct->SetRegions(MakeBox()->GetLargestPossibleRegion());
+  EXPECT_THROW(bone::VerifySameGrid(ct, MakeBox()), itk::ExceptionObject);
+  ct->CopyInformation(MakeBox());
+  EXPECT_NO_THROW(bone::VerifySameGrid(ct, MakeBox()));
+}
+
+TEST(MeshImageMetrics, MeshOnTheLabelsFacesIsAtDistanceZero)
+{
+  const auto distances = bone::MeasureSurfaceDistances(MakeBoxMesh(0.0), bone::MaskOfLabel(MakeBox(), 3));
+  EXPECT_NEAR(distances.meshToMask.maximum, 0.0, 1e-9);
+  EXPECT_NEAR(distances.maskToMesh.maximum, 0.0, 1e-9);
+}
+
+TEST(MeshImageMetrics, MovedMeshIsAtTheDistanceItWasMoved)
+{
+  const auto distances = bone::MeasureSurfaceDistances(MakeBoxMesh(0.4), bone::MaskOfLabel(MakeBox(), 3));
+  EXPECT_NEAR(distances.meshToMask.maximum, 0.4, 1e-9);
+  EXPECT_NEAR(distances.maskToMesh.maximum, 0.4, 1e-9);
+  EXPECT_LT(distances.meshToMask.mean, 0.4);
+  EXPECT_GT(distances.meshToMask.mean, 0.05);
+}
+
+TEST(MeshImageMetrics, OverlapAndPercentilesLookAtTheMask)
+{
+  const auto mask = bone::MaskOfLabel(MakeBox(), 3);
+  auto       model = bone::CTImage::New();
+  model->CopyInformation(mask);
+  model->SetRegions(mask->GetLargestPossibleRegion());
+  model->Allocate();
+  const std::size_t count = mask->GetLargestPossibleRegion().GetNumberOfPixels();
+  std::size_t       inside = 0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    model->GetBufferPointer()[k] = mask->GetBufferPointer()[k] != 0 ? static_cast<float>(inside++) : std::nanf("");
+  }
+  EXPECT_DOUBLE_EQ(bone::DiceOverlap(model, mask), 1.0);
+  const auto percentiles = bone::PercentileRange(model, mask);
+  EXPECT_NEAR(percentiles[0], 0.01 * static_cast<double>(inside), 1.0);
+  EXPECT_NEAR(percentiles[1], 0.99 * static_cast<double>(inside), 1.0);
+  model->FillBuffer(1.0F);
+  EXPECT_DOUBLE_EQ(bone::DiceOverlap(model, mask), 2.0 * inside / static_cast<double>(inside + count));
+}
+
+TEST(PlaneView, AxialViewHasLeftToTheRightAndFrontUp)
+{
+  const std::vector<bone::Vector3> points = { { -10, -20, 5 }, { 30, 40, 5 } };
+  const bone::PlaneView            view = bone::FramePlane(bone::Vector3::UnitZ(), points[0], points, 5.0, 70);
+  EXPECT_TRUE(view.right.isApprox(bone::Vector3::UnitX()));
+  EXPECT_TRUE(view.down.isApprox(bone::Vector3::UnitY()));
+  EXPECT_TRUE(view.corner.isApprox(bone::Vector3(-15, -25, 5)));
+  EXPECT_NEAR(view.Project(points[1]).x(), 45.0 / view.pixel, 1e-9);
+}
+
+TEST(PlaneView, CutFollowsThePointsAndHasTheHeadUp)
+{
+  std::vector<bone::Vector3> points;
+  for (int i = 0; i < 50; ++i)
+  {
+    points.emplace_back(std::cos(i) * 10.0, std::sin(2.0 * i), 4.0 * i);
+  }
+  const bone::PlaneView view = bone::FrameLargestCut(points, 2.0, 200);
+  EXPECT_LT(view.down.z(), -0.99);
+  EXPECT_GT(view.right.x(), 0.99);
+}
+
+TEST(Resolution, EstimateScalesWithTheSquareRoot)
+{
+  const auto coarse = bone::EstimateResolution(20000.0, 0.5, 10000);
+  const auto fine = bone::EstimateResolution(20000.0, 0.5, 40000);
+  EXPECT_NEAR(coarse.sliceStep / fine.sliceStep, 2.0, 1e-9);
+  EXPECT_NEAR(coarse.contourSpacing / fine.contourSpacing, 2.0, 1e-9);
+  EXPECT_DOUBLE_EQ(bone::EstimateResolution(20000.0, 3.0, 40000).sliceStep, 3.0);
+}
+
+TEST(Canvas, DrawsAPanelThroughItsWindow)
+{
+  bone::Panel panel;
+  panel.columns = 3;
+  panel.rows = 1;
+  panel.values = { 0.0F, 10.0F, std::nanf("") };
+  bone::Canvas canvas(3, 1, { { 9, 9, 9 } });
+  canvas.DrawPanel(0, 0, panel, { 0.0, 10.0 });
+  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 0, 0 } })[0], 0);
+  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 1, 0 } })[0], 255);
+  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 2, 0 } })[0], 9);
+}

@@ -1,0 +1,61 @@
+"""What the integration tests share: running bonetk, small inputs, and the rules that every command keeps."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import nibabel
+import numpy
+
+BONETK = os.environ["BONETK"]
+EXAMPLES = os.environ.get("BONETK_EXAMPLES", "")
+
+
+def bonetk(*arguments, **options):
+    """Runs a command; returns exit code, standard output and standard error."""
+    return run(BONETK, *arguments, **options)
+
+
+def run(*command, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **options)
+    return done.returncode, done.stdout, done.stderr
+
+
+def write_image(path, voxels, spacing=(1.0, 1.0, 1.0)):
+    """Writes an array indexed [x, y, z] as NIfTI; axes along R, A, S."""
+    nibabel.save(nibabel.Nifti1Image(voxels, numpy.diag(list(spacing[:3]) + [1.0])), path)
+
+
+class TestCase(unittest.TestCase):
+    """A test in an empty folder of its own."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.before = os.getcwd()
+        os.chdir(self.folder.name)
+        self.addCleanup(os.chdir, self.before)
+
+    def succeed(self, *arguments):
+        code, out, err = bonetk(*arguments)
+        self.assertEqual(code, 0, f"bonetk {arguments}: {err}")
+        return out, err
+
+    def refuse(self, *arguments, code=1, says="", output=None, **options):
+        """The command must fail with one line that says `says`, and leave nothing behind."""
+        files = sorted(os.listdir())
+        got, out, err = bonetk(*arguments, **options)
+        self.assertEqual(got, code, f"bonetk {arguments}: {out}{err}")
+        self.assertEqual(len(err.splitlines()), 1, f"bonetk {arguments}: {err}")
+        self.assertTrue(err.startswith("bonetk"), err)
+        self.assertNotIn("0x", err)
+        self.assertNotIn(".cxx", err)
+        self.assertNotIn(".hxx", err)
+        self.assertIn(says, err)
+        self.assertEqual(sorted(os.listdir()), files, f"bonetk {arguments} left something behind")
+        return err
+
+
+def main():
+    unittest.main(argv=[sys.argv[0], "-v"])

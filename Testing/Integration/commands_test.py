@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""The commands one after the other on a small phantom, the example programs, and what `info` and `validate` say."""
+import json
+import os
+
+import numpy
+import nibabel
+
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, run
+
+GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detectorU": [1, 0, 0],
+            "detectorV": [0, 0, -1], "size": [64, 80], "spacing": [4, 4]}
+
+
+class Commands(TestCase):
+    def test_stage_by_stage(self):
+        self.succeed("phantom", "--bone", "femur", "--spacing", 2, "--noise", 10, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        labels = numpy.asarray(nibabel.load("l.nii.gz").dataobj)
+        self.assertEqual(sorted(numpy.unique(labels)), [0, 1, 2, 3])
+        _, err = self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 7,
+                              "-o", "c.vtp")
+        self.assertIn("warning", err)  # the shaft is cut by the image's border
+        out, _ = self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+        self.assertIn("span length", out)
+        self.succeed("mesh", "c.vtp", "--ct", "ct.nii.gz", "-o", "m2.vtu")
+        for method in ("laplacian", "smart", "enhanced"):
+            self.succeed("smooth", "m.vtu", "--method", method, "--iterations", 2, "-o", method + ".vtu")
+        self.succeed("smooth", "m.vtu", "--swap", "--iterations", 2, "-o", "s.vtu")
+        self.succeed("fit", "ct.nii.gz", "s.vtu", "--degree", 2, "-o", "d.vtu")
+        self.succeed("fit", "ct.nii.gz", "d.vtu", "--degree", 1, "--continuous", "-o", "d1.vtu")
+        self.succeed("simplify", "d.vtu", "--tetrahedra", 2500, 1500, "-o", "h")
+        self.assertEqual(sorted(f for f in os.listdir() if f.startswith("h")),
+                         ["h.hierarchy.json", "h_L1.vtu", "h_L2.vtu", "h_L3.vtu"])
+        for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "d.vtu", "d1.vtu", "h_L2.vtu", "h_L3.vtu"):
+            out, _ = self.succeed("validate", mesh)
+            self.assertNotIn("FAILED", out, mesh)
+        levels = json.load(open("h.hierarchy.json"))["levels"]
+        self.assertLess(levels[1]["tetrahedra"], levels[0]["tetrahedra"])
+        self.assertEqual(len(levels[2]["parentPoint"]), levels[2]["points"])
+
+        json.dump(GEOMETRY, open("g.json", "w"))
+        self.succeed("drr", "d.vtu", "--geometry", "g.json", "-o", "model.nii.gz")
+        self.succeed("drr", "ct.nii.gz", "--mask", "l.nii.gz", "--geometry", "g.json", "-o", "ct_drr.nii.gz")
+        model = numpy.asarray(nibabel.load("model.nii.gz").dataobj)
+        voxels = numpy.asarray(nibabel.load("ct_drr.nii.gz").dataobj)
+        self.assertEqual(model.shape[:2], (64, 80))
+        self.assertLess(numpy.abs(model - voxels).mean(), 0.05 * voxels.max())
+        json.dump([GEOMETRY, GEOMETRY], open("two.json", "w"))
+        self.succeed("drr", "d.vtu", "--geometry", "two.json", "-o", "views.mha")
+        self.assertTrue(os.path.exists("views_V1.mha") and os.path.exists("views_V2.mha"))
+
+        for file, says in (("ct.nii.gz", "image"), ("l.nii.gz", "image"), ("c.vtp", "contours"), ("d.vtu", "degree 2"),
+                           ("h.hierarchy.json", "hierarchy"), ("g.json", "X-ray view"), ("views_V1.mha", "image")):
+            out, err = self.succeed("info", file)
+            self.assertIn(says, out)
+            self.assertEqual(err, "")
+
+    def test_hemipelvis_branches(self):
+        self.succeed("phantom", "--bone", "hemipelvis", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")
+        self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+        self.succeed("validate", "m.vtu")
+
+    def test_initial_contours_alone(self):
+        """A person draws one contour; the others follow from slice to slice."""
+        self.succeed("phantom", "--spacing", 1.5, "-o", "ct.nii.gz")
+        angle = numpy.linspace(0, 2 * numpy.pi, 24, endpoint=False)
+        points = [{"position": [17 * numpy.cos(a), 3 + 17 * numpy.sin(a), -100.5]} for a in angle]
+        markup = {"markups": [{"type": "ClosedCurve", "coordinateSystem": "LPS", "controlPoints": points}]}
+        json.dump(markup, open("init.mrk.json", "w"))
+        out, _ = self.succeed("info", "init.mrk.json")
+        self.assertIn("contours", out)
+        self.succeed("contours", "ct.nii.gz", "--init", "init.mrk.json", "--slice-step", 6, "-o", "c.vtp")
+        self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+
+    def test_quiet(self):
+        self.assertEqual(self.succeed("phantom", "--quiet", "--spacing", 4, "-o", "ct.nii.gz"), ("", ""))
+
+    def test_invalid_mesh(self):
+        """Two tetrahedra, one of them inside out."""
+        with open("bad.vtu", "w") as file:
+            file.write('<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">'
+                       '<UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2"><Points>'
+                       '<DataArray type="Float64" NumberOfComponents="3" format="ascii">'
+                       '0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1</DataArray></Points><Cells>'
+                       '<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 0 1 2 4</DataArray>'
+                       '<DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>'
+                       '<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray>'
+                       '</Cells></Piece></UnstructuredGrid></VTKFile>')
+        code, out, err = bonetk("validate", "bad.vtu")
+        self.assertEqual(code, 1)
+        self.assertIn("FAILED", out)
+        self.assertEqual(len(err.splitlines()), 1)
+
+    def test_example_programs(self):
+        def example(name, *arguments):
+            code, _, err = run(os.path.join(EXAMPLES, f"bone{name}Example"), *arguments)
+            self.assertEqual(code, 0, f"{name}: {err}")
+
+        example("Phantom", "ct.nii.gz", "l.nii.gz")
+        example("Contour", "ct.nii.gz", "l.nii.gz", "c.vtp")
+        example("Tiling", "c.vtp", "m.vtu")
+        example("Smoothing", "m.vtu", "s.vtu")
+        example("DensityFit", "ct.nii.gz", "s.vtu", "d.vtu")
+        example("Simplification", "d.vtu", "h")
+        example("Radiograph", "d.vtu", "drr.mha")
+        example("BuildModel", "ct.nii.gz", "l.nii.gz", "model")
+        self.assertTrue(os.path.exists("model_L2.vtu"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Outputs are whole or not there: interrupted runs, full disks, and the same bytes whatever the number of threads."""
+import os
+import resource
+import signal
+import subprocess
+import time
+
+from bonetk_testing import BONETK, TestCase, bonetk, main
+
+BUILD = ["--labels", "l.nii.gz", "--tetrahedra", "4000", "--degree", "2"]
+
+
+class Outputs(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.succeed("phantom", "--spacing", 2, "--noise", 15, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+
+    def contents(self, folder):
+        """Bytes by file name; the report without the times it took."""
+        files = {}
+        for name in sorted(os.listdir(folder)):
+            with open(os.path.join(folder, name), "rb") as file:
+                data = file.read()
+            if name.startswith("report."):
+                data = data[:data.index(b"seconds")]
+            files[name] = data
+        return files
+
+    def test_same_bytes_twice_and_for_any_number_of_threads(self):
+        for threads, folder in ((1, "one"), (2, "two"), (2, "again")):
+            self.succeed("build", "ct.nii.gz", *BUILD, "--threads", threads, "-o", folder)
+        one = self.contents("one")
+        for name in ("model_L1.vtu", "model_L2.vtu", "model_L3.vtu", "model.hierarchy.json", "contours.vtp", "report.json",
+                     "report.txt", "slices.png", "cut_plane.png", "radiographs.png"):
+            self.assertIn(name, one)
+        for folder in ("two", "again"):
+            other = self.contents(folder)
+            self.assertEqual(list(one), list(other))
+            self.assertEqual([n for n in one if one[n] != other[n]], [])
+
+    def test_build_into_a_folder_that_exists(self):
+        os.mkdir("out")
+        with open("out/mine.txt", "w") as file:
+            file.write("kept")
+        self.succeed("build", "ct.nii.gz", *BUILD, "-o", "out")
+        self.assertTrue({"mine.txt", "model_L1.vtu", "report.json"} <= set(os.listdir("out")))
+        with open("file", "w"):
+            pass
+        self.refuse("build", "ct.nii.gz", *BUILD, "-o", "file", says="file")
+
+    def interrupted(self, number, code, command):
+        """Ends a command after ever longer times; what is there afterwards is what was there before."""
+        before = sorted(os.listdir())
+        for delay in (0.02, 0.1, 0.3, 0.6, 1.0, 1.5):
+            process = subprocess.Popen([BONETK] + command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            process.send_signal(number)
+            got = process.wait(20)
+            if got == 0:
+                break  # it was faster
+            # A signal that comes before the handler is set ends the process the plain way.
+            self.assertIn(got, (code, -number))
+            self.assertEqual(sorted(os.listdir()), before)
+
+    def test_interrupted(self):
+        self.interrupted(signal.SIGINT, 130, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
+        self.interrupted(signal.SIGTERM, 1, ["build", "ct.nii.gz", *BUILD, "-o", "out2"])
+        self.interrupted(signal.SIGINT, 130, ["phantom", "--spacing", "1", "-o", "big.nii.gz"])
+
+    def full_disk(self, limit, *arguments):
+        """A file may not grow beyond `limit` bytes, which writers see as they see a full disk."""
+        self.refuse(*arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+
+    def test_full_disk(self):
+        for name in ("x.nii.gz", "x.nii", "x.mha", "x.mhd", "x.nrrd"):
+            self.full_disk(20000, "phantom", "--spacing", 2, "-o", name)
+        self.full_disk(20000, "build", "ct.nii.gz", *BUILD, "-o", "out")
+        self.full_disk(200000, "build", "ct.nii.gz", *BUILD, "-o", "out")
+        self.full_disk(2000, "contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "-q", "-o", "c.vtp")
+        self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "-o", "c.vtp")
+        self.full_disk(20000, "mesh", "c.vtp", "-o", "m.vtu")
+
+
+if __name__ == "__main__":
+    main()

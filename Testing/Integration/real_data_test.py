@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""The whole job on a real femur (BONETK_DATA, hip_ct, label 1), checked by an independent program where there is one."""
+import json
+import os
+import subprocess
+import sys
+import time
+
+from bonetk_testing import TestCase, main
+
+DATA = os.environ.get("BONETK_DATA")
+
+
+class RealData(TestCase):
+    def test_femur(self):
+        folder = os.path.join(DATA, "hip_ct")
+        self.assertTrue(os.path.isdir(folder), f"BONETK_DATA is set, but there is no folder {folder}")
+        ct, labels = os.path.join(folder, "hip_ct.nii.gz"), os.path.join(folder, "hip_labels.nii.gz")
+        start = time.time()
+        _, err = self.succeed("build", ct, "--labels", labels, "--label", 1, "-o", "out", "--degree", 3)
+        seconds = time.time() - start
+        print(f"{seconds:.1f} s", file=sys.stderr)
+        self.assertIn("warning", err)  # the bone leaves the image
+        self.assertLess(seconds, 60.0)
+        levels = json.load(open("out/report.json"))["levels"]
+        self.assertTrue(25000 <= levels[0]["tetrahedra"] <= 40000, levels[0]["tetrahedra"])
+        self.assertAlmostEqual(levels[1]["tetrahedra"] / levels[0]["tetrahedra"], 1 / 5, delta=0.03)
+        self.assertAlmostEqual(levels[2]["tetrahedra"] / levels[0]["tetrahedra"], 1 / 13, delta=0.015)
+        for level in levels:
+            self.assertTrue(level["valid"])
+        self.assertGreaterEqual(levels[0]["labelDice"], 0.97)
+        self.assertLessEqual(levels[0]["meshToLabelMm"]["mean"], 0.5)
+        checker = os.path.join(DATA, "..", "tools", "check_mesh.py")
+        if os.path.exists(checker):
+            self.check(checker, ct, labels, levels)
+
+    def check(self, checker, ct, labels, levels):
+        """The independent program finds each level valid and measures what the report says."""
+        for number, level in enumerate(levels, 1):
+            command = [sys.executable, checker, f"out/model_L{number}.vtu", "--json", "check.json"]
+            if number == 1:
+                command += ["--label", labels, "--label-value", "1", "--ct", ct]
+            done = subprocess.run(command, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            if number == 1:
+                info = json.load(open("check.json"))["info"]
+                self.assertGreaterEqual(info["label_dice"], 0.97)
+                self.assertLessEqual(info["mesh_to_label_mm"]["mean"], 0.5)
+                self.assertAlmostEqual(info["label_dice"], level["labelDice"], delta=0.005)
+                self.assertAlmostEqual(info["mesh_to_label_mm"]["mean"], level["meshToLabelMm"]["mean"], delta=0.1)
+                self.assertAlmostEqual(info["density"]["error_pct_of_range"], level["densityError"]["percentOfRange"],
+                                       delta=0.1)
+
+
+if __name__ == "__main__":
+    if not DATA:
+        print("BONETK_DATA is not set")
+        sys.exit(77)
+    main()
