@@ -6,6 +6,7 @@
 
 #include "boneIOError.h"
 
+#include <new>
 #include <sstream>
 
 namespace bone
@@ -28,7 +29,7 @@ Refuse(const TParts &... parts)
   throw itk::ExceptionObject(__FILE__, __LINE__, Say(parts...));
 }
 
-/** Runs action() and turns what ITK throws into an IOError that names the file. */
+/** Runs action() and turns what ITK throws, and a lack of memory, into an IOError that names the file. */
 template <typename TAction>
 auto
 NamingFile(const std::string & path, TAction && action)
@@ -44,6 +45,10 @@ NamingFile(const std::string & path, TAction && action)
   catch (const itk::ExceptionObject & error)
   {
     throw IOError(path, ErrorLine(error));
+  }
+  catch (const std::bad_alloc &)
+  {
+    throw IOError(path, "is damaged, or needs more memory than there is");
   }
 }
 } // namespace bone

@@ -9,7 +9,9 @@
 #include <vtkCommand.h>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
+#include <vtkOutputWindow.h>
 #include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
 #include <vtkXMLDataElement.h>
@@ -77,8 +79,49 @@ private:
   bool        m_Any{ false };
 };
 
-// VTK's error path for a cell array that is too short reads the piece's PointData element, which need not be there (VTK
-// 9.1 then crashes): this reader adds an empty one.
+// Swallows what objects inside a reader, which nobody can watch, say to VTK's window and log.
+class SilentWindow : public vtkOutputWindow
+{
+public:
+  vtkTypeMacro(SilentWindow, vtkOutputWindow);
+  static SilentWindow *
+  New()
+  {
+    auto * window = new SilentWindow;
+    window->InitializeObjectBase();
+    return window;
+  }
+  void
+  DisplayText(const char *) override
+  {}
+};
+
+class QuietVtk
+{
+public:
+  QuietVtk()
+    : m_Window(vtkOutputWindow::GetInstance())
+    , m_Verbosity(vtkLogger::GetCurrentVerbosityCutoff())
+  {
+    vtkOutputWindow::SetInstance(vtkNew<SilentWindow>());
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  ~QuietVtk()
+  {
+    vtkOutputWindow::SetInstance(m_Window);
+    vtkLogger::SetStderrVerbosity(m_Verbosity);
+  }
+  QuietVtk(const QuietVtk &) = delete;
+  QuietVtk &
+  operator=(const QuietVtk &) = delete;
+
+private:
+  vtkSmartPointer<vtkOutputWindow> m_Window;
+  vtkLogger::Verbosity             m_Verbosity;
+};
+
+// Refuses or completes what VTK 9.1 crashes at: a field array of an unknown type, and, where a cell array is too short,
+// a piece without the PointData element that its error path reads.
 template <typename TReader>
 class PieceReader : public TReader
 {
@@ -92,6 +135,21 @@ public:
   }
 
 protected:
+  int
+  ReadPrimaryElement(vtkXMLDataElement * primary) override
+  {
+    vtkXMLDataElement * fields = primary->FindNestedElementWithName("FieldData");
+    for (int i = 0; fields != nullptr && i < fields->GetNumberOfNestedElements(); ++i)
+    {
+      int type = 0;
+      if (fields->GetNestedElement(i)->GetWordTypeAttribute("type", type) == 0)
+      {
+        vtkErrorMacro("A field data array is of no known type.");
+        return 0;
+      }
+    }
+    return TReader::ReadPrimaryElement(primary);
+  }
   int
   ReadPiece(vtkXMLDataElement * piece) override
   {
@@ -110,6 +168,7 @@ auto
 ReadWith(TReader * reader, MessageCatcher * messages, const std::string & path, const char * kind)
 {
   RequireReadableFile(path);
+  const QuietVtk quiet;
   messages->Watch(reader);
   reader->SetFileName(path.c_str());
   reader->Update();

@@ -174,6 +174,21 @@ TEST_F(MeshIOTest, RefusesATruncatedBinaryFile)
   EXPECT_THAT(ErrorOfReading(garbled), HasSubstr("m.vtu: "));
 }
 
+TEST_F(MeshIOTest, RefusesArraysThatAreTooShortOrOfNoKnownType)
+{
+  Vtu vtu;
+  vtu.cellData = Array("Region", "Int32", 1, "");
+  EXPECT_THAT(ErrorOfReading(vtu.Text()), HasSubstr("\"Region\""));
+  vtu.cellData = Array("Region", "Int3C", 1, "1");
+  EXPECT_THAT(ErrorOfReading(vtu.Text()), HasSubstr("m.vtu: "));
+  vtu = Vtu();
+  vtu.fieldData = Array("DensityQuantity", "Int3C", 1, "1");
+  EXPECT_THAT(ErrorOfReading(vtu.Text()), HasSubstr("field data array is of no known type"));
+  vtu = Vtu();
+  vtu.numberOfPoints = 2000000000;
+  EXPECT_THAT(ErrorOfReading(vtu.Text()), HasSubstr("m.vtu: "));
+}
+
 TEST_F(MeshIOTest, RefusesCellsThatAreNoLinearTetrahedraAndSaysWhich)
 {
   Vtu hexahedron;
