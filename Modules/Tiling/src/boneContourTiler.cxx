@@ -199,7 +199,8 @@ private:
         continue;
       }
       Count(Pick(k, group.lower), Pick(k + 1, group.upper));
-      if (!m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) && !TryOtherAxes(k, group))
+      if (!TryCutOpen(k, group, low, high) && !m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) &&
+          !TryOtherAxes(k, group))
       {
         TileOrThin(k, group, low, high);
       }
@@ -237,6 +238,45 @@ private:
     m_Report.branchings += both.size() > 2;
     m_Report.layerBranchings +=
       std::any_of(both.begin(), both.end(), [regions](const Section & s) { return s.region.size() < regions; });
+  }
+
+  /** An open ring against a closed one, below or above, is tiled with that one cut open at the mouth. */
+  bool
+  TryCutOpen(int k, const Group & group, double low, double high)
+  {
+    if (group.lower.size() != 1 || group.upper.size() != 1)
+    {
+      return false;
+    }
+    Section lower = m_Sections[k][group.lower[0]], upper = m_Sections[k + 1][group.upper[0]];
+    if (lower.hole == upper.hole)
+    {
+      return false;
+    }
+    const Section & ring = lower.hole ? lower : upper;
+    const Section & other = lower.hole ? upper : lower;
+    const auto      outline = OuterPolygon(m_Pool.plane, other);
+    // A hole that begins in solid bone is drawn to a point; one before a mouth has little bone across it.
+    int covered = 0;
+    for (int v : ring.walks.back())
+    {
+      covered += PointInPolygon(m_Pool.plane[v], outline);
+    }
+    Section open;
+    if (2 * covered > static_cast<int>(ring.walks.back().size()) || !CutOpen(m_Pool.plane, ring, outline, open))
+    {
+      return false;
+    }
+    (lower.hole ? lower : upper) = open;
+    try
+    {
+      m_Slabs.TileGroup({ lower }, { upper }, low, high);
+    }
+    catch (const std::runtime_error & error)
+    {
+      throw SlabFailure(error.what(), LayeredPieces(k, group));
+    }
+    return true;
   }
 
   /** The slice above has no slab yet: it may take on the axis from below at any cost, or keep to its own. */

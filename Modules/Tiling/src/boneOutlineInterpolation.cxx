@@ -153,6 +153,10 @@ CollectLoops(const std::vector<Vector2> & plane,
   {
     for (std::size_t k = 0; k < section.region.size(); ++k)
     {
+      if (section.region[k] >= InnerHalf)
+      {
+        continue;
+      }
       LayerLoops & layer = result[section.region[k]];
       Polygon      polygon;
       for (int v : section.walks[k])
@@ -174,7 +178,7 @@ CollectLoops(const std::vector<Vector2> & plane,
       {
         hole.push_back(plane[v]);
       }
-      result[section.region.back()].loops.push_back(std::move(hole));
+      result[section.region.front()].loops.push_back(std::move(hole));
     }
   }
   return result;
@@ -266,6 +270,35 @@ InterpolateOutlines(const std::vector<Vector2> & plane,
     }
   }
   return pieces;
+}
+
+std::vector<Vector2>
+HalfwayLoop(const std::vector<Vector2> & outer, const std::vector<Vector2> & hole)
+{
+  LayerLoops a, b;
+  a.loops = { outer };
+  b.loops = { hole };
+  Polygon loop;
+  for (const Polygon & level : MeanLevel(a, b))
+  {
+    if (SignedArea(level) > 0 && PointInPolygon(hole.front(), level))
+    {
+      loop = level;
+    }
+  }
+  if (loop.empty())
+  {
+    return loop;
+  }
+  double length = 0.0;
+  for (const Polygon * polygon : { &outer, &hole })
+  {
+    for (std::size_t i = 0; i < polygon->size(); ++i)
+    {
+      length += ((*polygon)[(i + 1) % polygon->size()] - (*polygon)[i]).norm();
+    }
+  }
+  return ResampleClosed(loop, length / static_cast<double>(outer.size() + hole.size()));
 }
 } // namespace tiling
 } // namespace bone

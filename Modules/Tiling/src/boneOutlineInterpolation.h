@@ -17,6 +17,10 @@ InterpolateOutlines(const std::vector<Vector2> & plane,
                     const std::vector<int> &     layerOfVertex,
                     const std::vector<Section> & lower,
                     const std::vector<Section> & upper);
+
+/** The loop halfway between an outer contour and a hole in it; empty where there is no single one. */
+std::vector<Vector2>
+HalfwayLoop(const std::vector<Vector2> & outer, const std::vector<Vector2> & hole);
 } // namespace tiling
 } // namespace bone
 

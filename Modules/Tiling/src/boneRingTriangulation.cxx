@@ -177,7 +177,7 @@ SectionTriangles(const Section & section)
       const int next = letter == 0 ? outer[++i % outer.size()] : inner[++j % inner.size()];
       if (next != a && next != b && a != b)
       {
-        triangles.push_back({ { a, next, b }, section.region[k] });
+        triangles.push_back({ { a, next, b }, RegionOfSlot(section.region[k]) });
       }
     }
   }

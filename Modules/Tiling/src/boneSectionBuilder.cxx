@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneSectionBuilder.h"
 
+#include "boneOutlineInterpolation.h"
 #include "boneRingTriangulation.h"
 
 #include <algorithm>
@@ -370,6 +371,35 @@ CollectPieces(const ContourStack & stack, std::size_t slice, TilingReport & repo
 
 namespace
 {
+/** Adds the two rings about the loop halfway to the hole, or, where they cannot be triangulated, one ring to the hole.
+ */
+bool
+AddHole(SectionMaker & maker, const PieceOutline & piece, VertexPool & pool, Section & section)
+{
+  const Walk outer = section.walks.back();
+  const Walk hole = maker.AddLoop(piece.hole, 0);
+  const auto halfway = HalfwayLoop(piece.loops.back().points, piece.hole);
+  Merge      inside, outside;
+  section.hole = true;
+  if (halfway.size() > 2)
+  {
+    const Walk middle = maker.AddLoop(halfway, piece.loops.back().layer + 1);
+    if (std::isfinite(TriangulateRing(pool.plane, outer, middle, outside)) &&
+        std::isfinite(TriangulateRing(pool.plane, middle, hole, inside)))
+    {
+      section.walks.push_back(middle);
+      section.walks.push_back(hole);
+      section.rings.push_back(std::move(outside));
+      section.rings.push_back(std::move(inside));
+      section.region.push_back(section.region.back() + InnerHalf);
+      return true;
+    }
+  }
+  section.walks.push_back(hole);
+  section.rings.emplace_back();
+  return std::isfinite(TriangulateRing(pool.plane, outer, hole, section.rings.back()));
+}
+
 /** Fills in what follows from the walks of a plain piece. */
 Section
 Finished(Section section)
@@ -440,13 +470,8 @@ BuildSection(const ContourStack & stack,
     }
     if (!piece.hole.empty())
     {
-      const Walk walk = maker.AddLoop(piece.hole, 0);
-      Merge      ring;
-      if (std::isfinite(TriangulateRing(pool.plane, section.walks.back(), walk, ring)))
+      if (AddHole(maker, piece, pool, section))
       {
-        section.walks.push_back(walk);
-        section.rings.push_back(std::move(ring));
-        section.hole = true;
         return Finished(std::move(section));
       }
       pool.Resize(mark);

@@ -67,7 +67,7 @@ SlabTiler::KnitFrom(const Section &          lower,
     }
     const std::size_t mark = m_Tetrahedra.size();
     Merge             outer;
-    if (KnitRing(m_Pool, rings, inner, m_Metric, start, regions[ring], outer, m_Tetrahedra, more) &&
+    if (KnitRing(m_Pool, rings, inner, m_Metric, start, RegionOfSlot(regions[ring]), outer, m_Tetrahedra, more) &&
         (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regions, budget)))
     {
       return true;

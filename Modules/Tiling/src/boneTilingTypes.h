@@ -71,12 +71,23 @@ struct Spur
   int length; ///< steps
 };
 
+/** Slot of the inner half of a piece round a hole: it lies between a loop halfway to the hole and the hole. Slots of
+ * other rings are their regions. */
+constexpr int InnerHalf = 1000;
+
+/** The region that a ring's slot stands for. */
+inline int
+RegionOfSlot(int slot)
+{
+  return slot % InnerHalf;
+}
+
 /** The planar structure of one piece of bone on a slice, or of several joined by bridges (the paper's composite
  * contour): nested walks from the outer contour to the innermost walk (medial axis or hole) and the triangulated rings
  * between them. */
 struct Section
 {
-  /** Region of each ring, outside in. */
+  /** Slot of each ring, outside in: its region, or that plus InnerHalf. */
   std::vector<int> region;
   /** walks[k] bounds ring k outside; the last one is the innermost. One more than rings. */
   std::vector<Walk> walks;
