@@ -113,9 +113,11 @@ public:
   Density(const Vector3 & x) const;
 
   /** Density after a Gaussian point spread with standard deviations `sigma` (mm) along the columns of `axes`
-   * (orthonormal). Each surface is taken as flat across the direction of its normal, along which its function is
-   * taken as a parabola or, where it bends, followed in steps; a curved surface moves by less than sigma^2 times its
-   * mean curvature (0.004 mm for sigma 0.3 mm and a radius of 23 mm). sigma 0 gives the ideal density. */
+   * (orthonormal); sigma 0 gives the ideal density. In coordinates in which the point spread is round, each surface's
+   * function is averaged over the tangent plane, which is what its curvature amounts to, and taken along the normal as
+   * a parabola or, where it bends, in steps; materials are those at x. For deviations well below the radius of
+   * curvature.
+   */
   double
   BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, const Vector3 & sigma) const;
 
@@ -148,10 +150,11 @@ public:
   /** \} */
 
 private:
-  /** Part of the Gaussian about x with the standard deviation `deviation` (a vector along the normal) that lies inside
-   * a surface. */
+  /** Part of the Gaussian (of x + spread * y, y standard normal) inside a surface, whose gradient in y has the
+   * direction `normal`. */
   double
-  MeasureInside(int surface, const Vector3 & x, double level, const Vector3 & deviation) const;
+  MeasureInside(int surface, const Vector3 & x, double level, const Eigen::Matrix3d & spread, const Vector3 & normal)
+    const;
 };
 } // namespace bone
 

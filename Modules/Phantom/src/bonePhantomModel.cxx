@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "bonePhantomModel.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -98,22 +100,20 @@ PhantomModel::Density(const Vector3 & x) const
 double
 PhantomModel::BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, const Vector3 & sigma) const
 {
-  Gradients       gradients;
-  const Levels    levels = this->EvaluateLevels(x, gradients);
-  const Materials materials = this->EvaluateMaterials(x, levels);
-  double          density = materials[0];
+  // x + spread * y has the point spread's distribution where y has the standard normal one.
+  const Eigen::Matrix3d spread = axes * sigma.asDiagonal();
+  Gradients             gradients;
+  const Levels          levels = this->EvaluateLevels(x, gradients);
+  const Materials       materials = this->EvaluateMaterials(x, levels);
+  double                density = materials[0];
   for (int i = 0; i < this->GetNumberOfSurfaces(); ++i)
   {
-    double       inside = levels[i] < 0.0 ? 1.0 : 0.0;
-    const double norm = gradients[i].norm();
-    if (norm > 1e-9)
+    double        inside = levels[i] < 0.0 ? 1.0 : 0.0;
+    const Vector3 gradient = spread.transpose() * gradients[i];
+    const double  width = gradient.norm() / std::max(gradients[i].norm(), 1e-300);
+    if (gradient.norm() > 1e-9 && std::abs(levels[i]) < Tail * width * this->GetLipschitzBound(i))
     {
-      const Vector3 normal = gradients[i] / norm;
-      const double  spread = (axes.transpose() * normal).cwiseProduct(sigma).norm();
-      if (spread > 0.0 && std::abs(levels[i]) < Tail * spread * this->GetLipschitzBound(i))
-      {
-        inside = this->MeasureInside(i, x, levels[i], spread * normal);
-      }
+      inside = this->MeasureInside(i, x, levels[i], spread, gradient.normalized());
     }
     density += (materials[i + 1] - materials[i]) * inside;
   }
@@ -121,23 +121,37 @@ PhantomModel::BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, co
 }
 
 double
-PhantomModel::MeasureInside(int surface, const Vector3 & x, double level, const Vector3 & deviation) const
+PhantomModel::MeasureInside(int                     surface,
+                            const Vector3 &         x,
+                            double                  level,
+                            const Eigen::Matrix3d & spread,
+                            const Vector3 &         normal) const
 {
-  const auto   at = [&](double t) { return this->EvaluateLevels(x + t * deviation)[surface]; };
+  const auto at = [&](const Vector3 & y) { return this->EvaluateLevels(x + spread * y)[surface]; };
+
+  // Mean of the level over the tangent plane less the level at its origin: three-point Gauss-Hermite quadrature.
+  const Vector3 first = normal.unitOrthogonal();
+  const Vector3 second = normal.cross(first);
+  double        curve = -4.0 * level;
+  for (const Vector3 & tangent : { first, second })
+  {
+    curve += at(std::sqrt(3.0) * tangent) + at(-std::sqrt(3.0) * tangent);
+  }
+  curve /= 6.0;
+
   const double reach = 2.0;
-  const double above = at(reach);
-  const double below = at(-reach);
-  const double slope = (above - below) / (2.0 * reach);
+  const double above = at(reach * normal);
+  const double below = at(-reach * normal);
   const double bend = above + below - 2.0 * level;
   if (std::abs(bend) < 0.05 * (above - below))
   {
-    return MeasureBelowZero(level, slope, bend / (reach * reach));
+    return MeasureBelowZero(level + curve, (above - below) / (2.0 * reach), bend / (reach * reach));
   }
   // The middle of a thin layer or a strong blend: step along the normal.
   std::array<double, 13> profile;
   for (int i = 0; i < 13; ++i)
   {
-    profile[i] = i == 2 ? below : i == 6 ? level : i == 10 ? above : at(0.5 * (i - 6));
+    profile[i] = curve + (i == 2 ? below : i == 6 ? level : i == 10 ? above : at(0.5 * (i - 6) * normal));
   }
   return MeasureBelowZero(profile);
 }

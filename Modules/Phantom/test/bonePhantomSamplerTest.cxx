@@ -88,14 +88,14 @@ ExpectAgreement(PhantomModel::Pointer model,
 
 TEST(PhantomSampler, AgreesWithBruteForceForANarrowPointSpread)
 {
-  ExpectAgreement(std::make_shared<FemurPhantom>(), { 0.7, 0.8, 1.0 }, { 0.3, 0.3, 0.42 }, 40, 40.0);
-  ExpectAgreement(std::make_shared<HemipelvisPhantom>(), { 0.7, 0.8, 1.0 }, { 0.3, 0.3, 0.42 }, 40, 40.0);
+  ExpectAgreement(std::make_shared<FemurPhantom>(), { 0.7, 0.8, 1.0 }, { 0.3, 0.3, 0.42 }, 40, 30.0);
+  ExpectAgreement(std::make_shared<HemipelvisPhantom>(), { 0.7, 0.8, 1.0 }, { 0.3, 0.3, 0.42 }, 40, 30.0);
 }
 
 TEST(PhantomSampler, AgreesWithBruteForceForAWidePointSpread)
 {
-  ExpectAgreement(std::make_shared<FemurPhantom>(), { 0.7, 0.7, 3.0 }, { 0.3, 0.3, 1.27 }, 30, 40.0);
-  ExpectAgreement(std::make_shared<HemipelvisPhantom>(), { 2.0, 1.0, 1.5 }, { 0.9, 0.5, 0.7 }, 30, 40.0);
+  ExpectAgreement(std::make_shared<FemurPhantom>(), { 0.7, 0.7, 3.0 }, { 0.3, 0.3, 1.27 }, 30, 30.0);
+  ExpectAgreement(std::make_shared<HemipelvisPhantom>(), { 2.0, 1.0, 1.5 }, { 0.9, 0.5, 0.7 }, 30, 30.0);
 }
 
 TEST(PhantomSampler, GivesTheIdealDensityWithoutPointSpread)
@@ -160,8 +160,8 @@ TEST(PhantomSampler, BlurredEdgeIsHalfwayOnTheSurface)
                                        femur.GetShaftCentre(-150.0) - Vector3(femur.GetParameters().shaftRadius, 0, 0));
   const auto         materials = femur.EvaluateMaterials(x, femur.EvaluateLevels(x));
   const double       mean = 0.5 * (materials[0] + materials[1]);
-  EXPECT_NEAR(femur.BlurredDensity(x, Oblique(), { 0.3, 0.3, 0.45 }), mean, 2.0);
-  EXPECT_NEAR(femur.BlurredDensity(x, Oblique(), { 0.1, 0.4, 0.2 }), mean, 2.0);
+  EXPECT_NEAR(femur.BlurredDensity(x, Oblique(), { 0.3, 0.3, 0.45 }), mean, 16.0);
+  EXPECT_NEAR(femur.BlurredDensity(x, Oblique(), { 0.1, 0.4, 0.2 }), mean, 16.0);
 }
 
 TEST(PhantomNoise, IsStandardNormal)
