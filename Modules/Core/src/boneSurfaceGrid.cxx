@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bone
 {
@@ -60,10 +61,45 @@ SegmentsMeet2D(const Vector2 & p, const Vector2 & q, const Vector2 & r, const Ve
   return a * b <= 0 && c * d <= 0;
 }
 
+/** Orient3D with two steps before its rational arithmetic: neighbouring triangles are often coplanar but for rounding,
+ * or exactly so in a plane of the coordinate system. */
+int
+Side(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k])
+    {
+      return 0;
+    }
+  }
+  using Long = long double;
+  constexpr Long        epsilon = std::numeric_limits<Long>::epsilon() / 2;
+  Long                  m[3][3];
+  const Vector3 * const points[3] = { &b, &c, &d };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      m[i][k] = Long((*points[i])[k]) - Long(a[k]);
+    }
+  }
+  Long det = 0, permanent = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Long p = m[1][(k + 1) % 3] * m[2][(k + 2) % 3], q = m[1][(k + 2) % 3] * m[2][(k + 1) % 3];
+    det += m[0][k] * (p - q);
+    permanent += std::abs(m[0][k]) * (std::abs(p) + std::abs(q));
+  }
+  // Shewchuk's static bound, with some slack.
+  const Long bound = 10 * epsilon * permanent + Long(1e-280);
+  return det > bound ? 1 : -det > bound ? -1 : Orient3D(a, b, c, d);
+}
+
 bool
 SegmentMeetsTriangle(const Vector3 & p, const Vector3 & q, const Vector3 & a, const Vector3 & b, const Vector3 & c)
 {
-  const int op = Orient3D(a, b, c, p), oq = Orient3D(a, b, c, q);
+  const int op = Side(a, b, c, p), oq = Side(a, b, c, q);
   if (op * oq > 0)
   {
     return false;
@@ -76,7 +112,7 @@ SegmentMeetsTriangle(const Vector3 & p, const Vector3 & q, const Vector3 & a, co
     const bool       inside = (o1 >= 0 && o2 >= 0 && o3 >= 0) || (o1 <= 0 && o2 <= 0 && o3 <= 0);
     return inside || SegmentsMeet2D(p2, q2, a2, b2) || SegmentsMeet2D(p2, q2, b2, c2) || SegmentsMeet2D(p2, q2, c2, a2);
   }
-  const int o1 = Orient3D(p, q, a, b), o2 = Orient3D(p, q, b, c), o3 = Orient3D(p, q, c, a);
+  const int o1 = Side(p, q, a, b), o2 = Side(p, q, b, c), o3 = Side(p, q, c, a);
   return (o1 >= 0 && o2 >= 0 && o3 >= 0) || (o1 <= 0 && o2 <= 0 && o3 <= 0);
 }
 
@@ -100,7 +136,7 @@ bool
 FoldsOnto(IdType p, IdType q, IdType apexS, IdType apexT, const std::vector<Vector3> & points)
 {
   const Vector3 &a = points[p], &b = points[q], &c = points[apexS], &d = points[apexT];
-  if (Orient3D(a, b, c, d) != 0)
+  if (Side(a, b, c, d) != 0)
   {
     return false;
   }
@@ -164,6 +200,15 @@ TrianglesCross(const TriangleIds & s, const TriangleIds & t, const std::vector<V
       return meets(onlyS[0], onlyS[1], t) || meets(onlyT[0], onlyT[1], s);
     default:
       break;
+  }
+  const auto apart = [&points](const TriangleIds & u, const TriangleIds & v) {
+    const auto side = [&](int k) { return Side(points[u[0]], points[u[1]], points[u[2]], points[v[k]]); };
+    const int  first = side(0);
+    return first != 0 && side(1) == first && side(2) == first;
+  };
+  if (apart(s, t) || apart(t, s))
+  {
+    return false;
   }
   for (int k = 0; k < 3; ++k)
   {

@@ -338,15 +338,33 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
 FlipReport
 ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const FlipObserver & observer)
 {
-  FlipReport   report;
-  CellImprover improver(complex, parameters, report, observer);
-  const double limit = std::cos(parameters.targetAngle);
+  FlipReport         report;
+  const double       limit = std::cos(parameters.targetAngle);
+  std::vector<char>  active(complex.Points().size(), 1), next(complex.Points().size(), 0);
+  const FlipObserver note = [&](const FlipResult & flip) {
+    for (IdType t : flip.created)
+    {
+      for (IdType p : complex.Cell(t))
+      {
+        next[p] = 1;
+      }
+    }
+    if (observer)
+    {
+      observer(flip);
+    }
+  };
+  CellImprover improver(complex, parameters, report, note);
   for (int pass = 0; pass < parameters.maximumPasses; ++pass)
   {
     std::vector<std::pair<double, IdType>> worst;
     for (IdType t = 0; t < complex.Size(); ++t)
     {
-      const double cosine = complex.IsAlive(t) ? CellCosine(complex, t) : -1.0;
+      // A cell where nothing has changed since it was refused would be refused again.
+      const auto & cell = complex.Cell(t);
+      const bool   looked =
+        complex.IsAlive(t) && (active[cell[0]] || active[cell[1]] || active[cell[2]] || active[cell[3]]);
+      const double cosine = looked ? CellCosine(complex, t) : -1.0;
       if (cosine > limit)
       {
         worst.emplace_back(-cosine, t);
@@ -365,6 +383,8 @@ ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const 
     {
       break;
     }
+    active.swap(next);
+    std::fill(next.begin(), next.end(), 0);
   }
   return report;
 }

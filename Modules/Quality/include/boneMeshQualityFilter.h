@@ -39,13 +39,13 @@ public:
   /** Pairs of Taubin steps that fair the surfaces; default 10. */
   itkSetMacro(FairingIterations, int);
   itkGetConstMacro(FairingIterations, int);
-  /** Rounds of smoothing, swaps and optimisation; default 4. */
+  /** Rounds of smoothing, swaps and optimisation; default 3. */
   itkSetMacro(Rounds, int);
   itkGetConstMacro(Rounds, int);
   /** Cells with a dihedral angle below are swapped and optimised, rad; default 0.44 (25 degrees). */
   itkSetMacro(TargetAngle, double);
   itkGetConstMacro(TargetAngle, double);
-  /** Passes of optimisation a round; default 3. */
+  /** Passes of optimisation a round; default 2. */
   itkSetMacro(OptimizationPasses, int);
   itkGetConstMacro(OptimizationPasses, int);
   /** What the last run did. */
@@ -69,9 +69,9 @@ private:
   int               m_Iterations{ 10 };
   double            m_DistanceBound{ 0.3 };
   int               m_FairingIterations{ 10 };
-  int               m_Rounds{ 4 };
+  int               m_Rounds{ 3 };
   double            m_TargetAngle{ 0.44 };
-  int               m_OptimizationPasses{ 3 };
+  int               m_OptimizationPasses{ 2 };
   ImprovementReport m_Report;
 };
 

@@ -55,9 +55,9 @@ EnhancedIteration(TetraComplex &              complex,
 struct ImprovementParameters
 {
   SmoothingParameters smoothing;
-  int                 rounds{ 4 };         ///< of smoothing, flips and optimisation
+  int                 rounds{ 3 };         ///< of smoothing, flips and optimisation
   double              targetAngle{ 0.44 }; ///< rad; cells with a smaller dihedral angle are flipped and optimised
-  int                 optimizationPasses{ 3 };
+  int                 optimizationPasses{ 2 };
 };
 
 struct ImprovementReport

@@ -71,7 +71,7 @@ PlainIteration(TetraComplex & complex, PointMover & mover, bool smart, Smoothing
   }
 }
 
-/** Pattern search: steps along the axes and diagonals of the point's star, shrinking while nothing is gained. */
+/** Pattern search: steps along axes and diagonals, shrinking from stage to stage. */
 class PointOptimizer
 {
 public:
@@ -79,6 +79,7 @@ public:
     : m_Complex(complex)
     , m_Mover(mover)
     , m_Target(target)
+    , m_Dirty(complex.Points().size(), 1)
   {
     for (int i = -1; i <= 1; ++i)
     {
@@ -86,7 +87,7 @@ public:
       {
         for (int k = -1; k <= 1; ++k)
         {
-          if (i != 0 || j != 0 || k != 0)
+          if (std::abs(i) + std::abs(j) + std::abs(k) == 1 || i * j * k != 0)
           {
             m_Directions.push_back(Vector3(i, j, k).normalized());
           }
@@ -95,43 +96,94 @@ public:
     }
   }
 
-  /** Returns the number of accepted moves. */
-  int
-  Run(IdType p)
+  /** Moves the points of all cells whose smallest dihedral angle has a cosine above the limit, the worst first, each
+   * once. Returns the number of moves. */
+  std::size_t
+  Run(double limit)
   {
-    constexpr int    stages = 4;
-    constexpr double gain = 1e-4;
-    const auto &     points = m_Complex.Points();
-    double           step = 0.25 * (MeanOf(points, m_Complex.PointNeighbors(p)) - points[p]).norm() + 0.1 * Reach(p);
-    double           worst = m_Mover.WorstCosine(p);
-    int              moves = 0;
-    for (int stage = 0; stage < stages; ++stage, step *= 0.4)
+    std::vector<std::pair<double, IdType>> worst;
+    for (IdType t = 0; t < m_Complex.Size(); ++t)
     {
-      const Vector3 start = points[p];
-      for (const Vector3 & direction : m_Directions)
+      const double cosine = m_Complex.IsAlive(t) ? CellCosine(m_Complex, t) : -1.0;
+      if (cosine > limit)
       {
-        const Vector3 x = m_Target.Project(m_Complex, p, start + step * direction);
-        if (WorstAt(p, x, worst - gain) < worst - gain && m_Mover.TryMove(p, x, -1.0) == MeshOperation::Done)
+        worst.emplace_back(-cosine, t);
+      }
+    }
+    std::sort(worst.begin(), worst.end());
+    std::size_t       moves = 0;
+    std::vector<char> seen(m_Dirty.size(), 0);
+    for (const auto & candidate : worst)
+    {
+      for (IdType p : m_Complex.Cell(candidate.second))
+      {
+        if (m_Dirty[p] && !seen[p] && m_Complex.Dimension(p) > 0)
         {
-          worst = m_Mover.WorstCosine(p);
-          ++moves;
+          m_Dirty[p] = 0;
+          seen[p] = 1;
+          moves += Improve(p);
         }
       }
     }
     return moves;
   }
 
-private:
-  double
-  Reach(IdType p) const
+  void
+  MarkAll()
   {
-    double     sum = 0.0;
-    const auto neighbors = m_Complex.PointNeighbors(p);
+    std::fill(m_Dirty.begin(), m_Dirty.end(), 1);
+  }
+  void
+  Mark(const FlipResult & flip)
+  {
+    for (IdType t : flip.created)
+    {
+      for (IdType p : m_Complex.Cell(t))
+      {
+        m_Dirty[p] = 1;
+      }
+    }
+  }
+
+private:
+  bool
+  Improve(IdType p)
+  {
+    constexpr int    stages = 4;
+    constexpr double gain = 1e-4, first = 0.15, shrink = 0.4;
+    const auto       neighbors = m_Complex.PointNeighbors(p);
+    const Vector3    start = m_Complex.Points()[p];
+    double           step = 0.0;
     for (IdType q : neighbors)
     {
-      sum += (m_Complex.Points()[q] - m_Complex.Points()[p]).norm();
+      step += first * (m_Complex.Points()[q] - start).norm() / static_cast<double>(neighbors.size());
     }
-    return sum / static_cast<double>(neighbors.size());
+    const double before = m_Mover.WorstCosine(p);
+    double       worst = before;
+    Vector3      best = start;
+    for (int stage = 0; stage < stages; ++stage, step *= shrink)
+    {
+      const Vector3 centre = best;
+      for (const Vector3 & direction : m_Directions)
+      {
+        const Vector3 x = m_Target.Project(m_Complex, p, centre + step * direction);
+        const double  cosine = WorstAt(p, x, worst);
+        if (cosine < worst)
+        {
+          worst = cosine;
+          best = x;
+        }
+      }
+    }
+    if (!(worst < before - gain) || m_Mover.TryMove(p, best, -1.0) != MeshOperation::Done)
+    {
+      return false;
+    }
+    for (IdType q : neighbors)
+    {
+      m_Dirty[q] = 1;
+    }
+    return true;
   }
 
   /** Worst cosine with p at x, or some value not below `limit`; 2 where a cell is not positive in floating point. The
@@ -157,37 +209,8 @@ private:
   PointMover &          m_Mover;
   const SurfaceTarget & m_Target;
   std::vector<Vector3>  m_Directions;
+  std::vector<char>     m_Dirty; ///< something at the point has changed since it was last looked at
 };
-
-std::size_t
-OptimizeWorst(TetraComplex & complex, PointMover & mover, const SurfaceTarget & target, double limit)
-{
-  std::vector<std::pair<double, IdType>> worst;
-  for (IdType t = 0; t < complex.Size(); ++t)
-  {
-    const double cosine = complex.IsAlive(t) ? CellCosine(complex, t) : -1.0;
-    if (cosine > limit)
-    {
-      worst.emplace_back(-cosine, t);
-    }
-  }
-  std::sort(worst.begin(), worst.end());
-  PointOptimizer    optimizer(complex, mover, target);
-  std::vector<char> done(complex.Points().size(), 0);
-  std::size_t       moves = 0;
-  for (const auto & candidate : worst)
-  {
-    for (IdType p : complex.Cell(candidate.second))
-    {
-      if (!done[p] && complex.Dimension(p) > 0)
-      {
-        done[p] = 1;
-        moves += optimizer.Run(p);
-      }
-    }
-  }
-  return moves;
-}
 } // namespace
 
 void
@@ -259,7 +282,10 @@ ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, co
   const SurfaceTarget         target(complex, smoothing.distanceBound, smoothing.fairingIterations);
   FlipParameters              flips;
   flips.targetAngle = parameters.targetAngle;
-  const auto advance = [&](double done) {
+  PointOptimizer optimizer(complex, mover, target);
+  const auto     observer = [&](const FlipResult & flip) { optimizer.Mark(flip); };
+  const double   limit = std::cos(parameters.targetAngle);
+  const auto     advance = [&](double done) {
     if (progress)
     {
       progress(done);
@@ -273,12 +299,13 @@ ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, co
       EnhancedIteration(complex, mover, target, smoothing, report.smoothing);
       advance((round + 0.4 * (i + 1) / iterations) / parameters.rounds);
     }
+    optimizer.MarkAll();
     report.flips += ImproveByFlips(complex, flips).done;
     advance((round + 0.6) / parameters.rounds);
     for (int pass = 0; pass < parameters.optimizationPasses; ++pass)
     {
-      report.optimized += OptimizeWorst(complex, mover, target, std::cos(parameters.targetAngle));
-      report.flips += ImproveByFlips(complex, flips).done;
+      report.optimized += optimizer.Run(limit);
+      report.flips += ImproveByFlips(complex, flips, observer).done;
       advance((round + 0.6 + 0.4 * (pass + 1) / parameters.optimizationPasses) / parameters.rounds);
     }
   }

@@ -1,0 +1,168 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshCollapser_h
+#define boneMeshCollapser_h
+
+#include "boneDensitySamples.h"
+#include "boneSurfaceGrid.h"
+#include "boneSurfaceSamples.h"
+#include "boneTetraComplex.h"
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <queue>
+#include <vector>
+
+namespace bone
+{
+/** Weights and bounds of the collapse; the terms of the cost are in mm^3. */
+struct CollapseParameters
+{
+  double densityWeight{ 1.0 };  ///< of the squared density error, as a share of the density's range, integrated
+  double surfaceWeight{ 1.0 };  ///< 1/mm, of the squared distance of boundary and interfaces, integrated
+  double volumeWeight{ 200.0 }; ///< of the growth of each region's squared volume error over its volume
+  double shapeWeight{ 0.05 };   ///< of the cells' volume, where their smallest dihedral angle is small
+  double minimumAngle{ 0.052 }; ///< rad; no collapse takes a dihedral angle below this and below what it was
+  double maximumDistance{ std::numeric_limits<double>::infinity() };     ///< mm, of removed points to their surface
+  double maximumVolumeChange{ std::numeric_limits<double>::infinity() }; ///< of each region, as a share
+};
+
+/** \class MeshCollapser
+ * \brief Half-edge collapses v -> w from a priority queue (paper 4).
+ *
+ * The queue holds points. A point's cost is that of its best target w; it is computed when the point comes to the head
+ * of the queue and something around it has changed (lazily), and the point goes back where the cost has grown.
+ * A collapse is refused, by reason, where v would leave its surface or curve, where the link condition fails, where a
+ * changed tetrahedron would not be positive (exact), where a dihedral angle would fall both below the floor and below
+ * what it was, where the boundary would pass through itself, and beyond the bounds on distance and volume.
+ *
+ * Cost of v -> w = densityWeight R(v) / range^2 + surfaceWeight S(v, w) + volumeWeight sum of ((E + dV)^2 - E^2) / V
+ * + shapeWeight V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3: R from \ref DensitySamples::RemovalCost, S from \ref
+ * SurfaceSamples::CollapseCost, E and dV the volume error so far and the change of each region of volume V. */
+class MeshCollapser
+{
+public:
+  MeshCollapser(const MeshArrays & mesh, const CollapseParameters & parameters);
+
+  /** Collapses until no more than \a target cells or nothing allowed is left. Returns the number of collapses. */
+  std::size_t
+  Run(IdType target, const std::function<void()> & progress = {});
+
+  /** Flips at cells below the angle (rad); no more cells than there are. Returns the number of flips. */
+  std::size_t
+  Flip(double angle);
+
+  const TetraComplex &
+  Complex() const
+  {
+    return m_Complex;
+  }
+  const DensitySamples &
+  Densities() const
+  {
+    return m_Densities;
+  }
+  double
+  SurfaceDistance() const
+  {
+    return m_SurfaceSamples.LargestDistance();
+  }
+  /** Where nothing was left to collapse: whether a bound on distance or volume was among the reasons. */
+  bool
+  IsBoundedBySurfaces() const
+  {
+    return m_BoundedBySurfaces;
+  }
+  /** Refused candidates by \ref MeshOperation. */
+  const std::array<std::size_t, MeshOperationCount> &
+  Refused() const
+  {
+    return m_Refused;
+  }
+  /** 1 for each slot that was written since the last call of ClearChanged. */
+  const std::vector<char> &
+  Changed() const
+  {
+    return m_Changed;
+  }
+  void
+  ClearChanged();
+
+private:
+  struct Entry
+  {
+    double cost;
+    IdType v;
+
+    bool
+    operator<(const Entry & other) const // the queue gives the largest
+    {
+      return cost != other.cost ? cost > other.cost : v > other.v;
+    }
+  };
+  struct Candidate
+  {
+    double cost{ 0.0 };
+    IdType w{ -1 };
+  };
+  struct Region
+  {
+    int    label;
+    double volume;
+    double error;
+  };
+  enum class State : std::uint8_t
+  {
+    Queued,
+    Parked, ///< nothing allowed; looked at again when something around it has changed and the queue is empty
+    Gone
+  };
+
+  Candidate
+  FindBest(IdType v);
+  MeshOperation
+  Rate(IdType v, IdType w, double densityCost, double worstNow, double & cost);
+  MeshOperation
+  CheckExactly(IdType v, IdType w);
+  MeshOperation
+  CheckVolume(IdType v, double & cost);
+  bool
+  BoundaryCrosses(IdType v, IdType w);
+  void
+  Commit(IdType v, IdType w);
+  void
+  UpdateGrid(IdType v, bool insert);
+  void
+  Refresh();
+  bool
+  Requeue();
+  void
+  NoteWhyParked();
+  Region &
+  RegionOf(int label);
+
+  TetraComplex                                m_Complex;
+  DensitySamples                              m_Densities;
+  SurfaceSamples                              m_SurfaceSamples;
+  CollapseParameters                          m_Parameters;
+  SurfaceGrid                                 m_Grid;
+  std::vector<Region>                         m_Regions;
+  std::vector<double>                         m_VolumeChange; ///< of each region, by the candidate looked at
+  std::priority_queue<Entry>                  m_Queue;
+  std::vector<State>                          m_State;
+  std::vector<char>                           m_Dirty;
+  std::vector<IdType>                         m_Target;
+  std::vector<double>                         m_Cost;
+  std::vector<std::size_t>                    m_Epoch; ///< number of collapses when the cost was computed
+  std::size_t                                 m_Collapses{ 0 };
+  IdType                                      m_RefreshAt{ 0 }; ///< number of cells
+  std::vector<char>                           m_Changed;
+  bool                                        m_BoundedBySurfaces{ false };
+  std::array<std::size_t, MeshOperationCount> m_Refused{};
+  std::vector<TetraComplex::SurfaceFace>      m_Faces;
+};
+} // namespace bone
+
+#endif

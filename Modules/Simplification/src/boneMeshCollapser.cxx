@@ -1,0 +1,454 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshCollapser.h"
+
+#include "bonePredicates.h"
+#include "boneQualityMeasures.h"
+#include "boneTetraFlips.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bone
+{
+namespace
+{
+constexpr double GoodAngle = 25.0 / 57.29577951308232;
+constexpr double LengthWeight = 1e-3;
+constexpr double FlipAngle = 20.0 / 57.29577951308232;
+constexpr double RefreshShare = 0.85;
+
+double
+MeanBoundaryEdge(const MeshArrays & mesh)
+{
+  const auto faces = BoundaryFaces(mesh);
+  double     sum = 0.0;
+  for (const auto & f : faces)
+  {
+    sum += (mesh.points[f[0]] - mesh.points[f[1]]).norm();
+  }
+  return sum > 0 ? sum / static_cast<double>(faces.size()) : 1.0;
+}
+
+MeshArrays
+WithNeighbors(MeshArrays mesh)
+{
+  if (mesh.neighbors.empty())
+  {
+    mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  }
+  return mesh;
+}
+
+bool
+IsTested(const TetraComplex & complex, int surface)
+{
+  // Flat cuts have the whole body on one side of their plane, and cannot overlap in it while cells are positive.
+  return surface >= 0 && complex.Surfaces().surfaces[surface].IsBoundary() &&
+         complex.Surfaces().surfaces[surface].flat < 0;
+}
+} // namespace
+
+MeshCollapser::MeshCollapser(const MeshArrays & mesh, const CollapseParameters & parameters)
+  : m_Complex(WithNeighbors(mesh))
+  , m_Densities(mesh)
+  , m_SurfaceSamples(m_Complex)
+  , m_Parameters(parameters)
+  // Faces will grow by some three times.
+  , m_Grid(2.0 * MeanBoundaryEdge(WithNeighbors(mesh)))
+  , m_State(mesh.points.size(), State::Gone)
+  , m_Dirty(mesh.points.size(), 1)
+  , m_Target(mesh.points.size(), -1)
+  , m_Cost(mesh.points.size(), 0.0)
+  , m_Epoch(mesh.points.size(), 0)
+  , m_RefreshAt(m_Complex.AliveCells())
+  , m_Changed(mesh.tetrahedra.size(), 0)
+{
+  const auto & p = m_Complex.Points();
+  for (IdType t = 0; t < m_Complex.Size(); ++t)
+  {
+    const Id4 & c = m_Complex.Cell(t);
+    RegionOf(m_Complex.Region(t)).volume += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    for (int i = 0; i < 4; ++i)
+    {
+      if (IsTested(m_Complex, m_Complex.FaceSurfaces(t)[i]))
+      {
+        m_Grid.Insert({ c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] }, p);
+      }
+    }
+  }
+  m_VolumeChange.assign(m_Regions.size(), 0.0);
+  for (IdType v = 0; v < static_cast<IdType>(p.size()); ++v)
+  {
+    if (!m_Complex.Star(v).empty() && m_Complex.Dimension(v) > 0)
+    {
+      m_State[v] = State::Queued;
+      m_Queue.push({ 0.0, v });
+    }
+  }
+}
+
+MeshCollapser::Region &
+MeshCollapser::RegionOf(int label)
+{
+  auto at = std::find_if(m_Regions.begin(), m_Regions.end(), [label](const Region & r) { return r.label == label; });
+  if (at == m_Regions.end())
+  {
+    m_Regions.push_back({ label, 0.0, 0.0 });
+    at = m_Regions.end() - 1;
+  }
+  return *at;
+}
+
+MeshOperation
+MeshCollapser::CheckVolume(IdType v, double & cost)
+{
+  if (m_Complex.Dimension(v) == 3)
+  {
+    return MeshOperation::Done;
+  }
+  for (std::size_t r = 0; r < m_Regions.size(); ++r)
+  {
+    const Region & region = m_Regions[r];
+    const double   after = region.error + m_VolumeChange[r];
+    // A change that brings a region back is always allowed.
+    if (std::abs(after) > m_Parameters.maximumVolumeChange * region.volume && std::abs(after) > std::abs(region.error))
+    {
+      return MeshOperation::Volume;
+    }
+    cost += m_Parameters.volumeWeight * (after * after - region.error * region.error) / region.volume;
+  }
+  return MeshOperation::Done;
+}
+
+MeshOperation
+MeshCollapser::Rate(IdType v, IdType w, double densityCost, double worstNow, double & cost)
+{
+  const auto & p = m_Complex.Points();
+  double       worst = -1.0, volume = 0.0;
+  std::fill(m_VolumeChange.begin(), m_VolumeChange.end(), 0.0);
+  const double limit = std::max(std::cos(m_Parameters.minimumAngle), worstNow);
+  for (IdType t : m_Complex.Star(v))
+  {
+    Id4          c = m_Complex.Cell(t);
+    const double before = SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    double &     change = m_VolumeChange[&RegionOf(m_Complex.Region(t)) - m_Regions.data()];
+    change -= before;
+    if (m_Complex.Has(t, w))
+    {
+      continue;
+    }
+    c[m_Complex.LocalIndex(t, v)] = w;
+    const double after = SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    if (!(after > 0))
+    {
+      return MeshOperation::Orientation;
+    }
+    worst = std::max(worst, LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
+    if (worst > limit)
+    {
+      return MeshOperation::Quality;
+    }
+    change += after;
+    volume += after;
+  }
+  if (!(volume > 0))
+  {
+    return MeshOperation::Topology; // nothing would be left of the star
+  }
+  const auto surface = m_SurfaceSamples.CollapseCost(m_Complex, v, w);
+  if (surface.largestDistance > m_Parameters.maximumDistance)
+  {
+    return MeshOperation::Distance;
+  }
+  const double shape = std::max(0.0, 1.0 - std::acos(worst) / GoodAngle);
+  const double length = (p[v] - p[w]).norm();
+  cost = densityCost + m_Parameters.surfaceWeight * surface.integral +
+         m_Parameters.shapeWeight * volume * shape * shape + LengthWeight * length * length * length;
+  return CheckVolume(v, cost);
+}
+
+bool
+MeshCollapser::BoundaryCrosses(IdType v, IdType w)
+{
+  std::vector<TriangleIds> changed;
+  m_Complex.SurfaceStar(v, m_Faces);
+  for (const auto & face : m_Faces)
+  {
+    if (IsTested(m_Complex, face.surface) && face.a != w && face.b != w)
+    {
+      changed.push_back({ w, face.a, face.b });
+    }
+  }
+  const auto & points = m_Complex.Points();
+  return std::any_of(
+    changed.begin(), changed.end(), [&](const TriangleIds & t) { return m_Grid.Crosses(t, v, points); });
+}
+
+MeshOperation
+MeshCollapser::CheckExactly(IdType v, IdType w)
+{
+  const MeshOperation topology = m_Complex.CanCollapse(v, w);
+  if (topology != MeshOperation::Done)
+  {
+    return topology;
+  }
+  const auto & p = m_Complex.Points();
+  for (IdType t : m_Complex.Star(v))
+  {
+    Id4 c = m_Complex.Cell(t);
+    if (!m_Complex.Has(t, w))
+    {
+      c[m_Complex.LocalIndex(t, v)] = w;
+      if (Orient3D(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) <= 0)
+      {
+        return MeshOperation::Orientation;
+      }
+    }
+  }
+  return m_Complex.Dimension(v) < 3 && BoundaryCrosses(v, w) ? MeshOperation::Overlap : MeshOperation::Done;
+}
+
+MeshCollapser::Candidate
+MeshCollapser::FindBest(IdType v)
+{
+  std::vector<IdType> targets;
+  switch (m_Complex.Dimension(v))
+  {
+    case 1:
+      targets = m_Complex.Surfaces().curve[v];
+      break;
+    case 2:
+      m_Complex.SurfaceStar(v, m_Faces);
+      for (const auto & face : m_Faces)
+      {
+        targets.push_back(face.a);
+      }
+      break;
+    default:
+      targets = m_Complex.PointNeighbors(v);
+  }
+  double worst = -1.0;
+  for (IdType t : m_Complex.Star(v))
+  {
+    worst = std::max(worst, CellCosine(m_Complex, t));
+  }
+  const double densityCost =
+    m_Parameters.densityWeight > 0 && !m_Densities.IsEmpty()
+      ? m_Parameters.densityWeight * m_Densities.RemovalCost(m_Complex, v) / (m_Densities.Range() * m_Densities.Range())
+      : 0.0;
+  std::vector<std::pair<double, IdType>> rated;
+  for (IdType w : targets)
+  {
+    double              cost = 0.0;
+    const MeshOperation outcome = Rate(v, w, densityCost, worst, cost);
+    if (outcome == MeshOperation::Done)
+    {
+      rated.emplace_back(cost, w);
+    }
+    else
+    {
+      ++m_Refused[static_cast<int>(outcome)];
+    }
+  }
+  std::sort(rated.begin(), rated.end());
+  Candidate best;
+  for (const auto & candidate : rated)
+  {
+    const MeshOperation outcome = CheckExactly(v, candidate.second);
+    if (outcome == MeshOperation::Done)
+    {
+      best.cost = candidate.first;
+      best.w = candidate.second;
+      break;
+    }
+    ++m_Refused[static_cast<int>(outcome)];
+  }
+  return best;
+}
+
+void
+MeshCollapser::UpdateGrid(IdType v, bool insert)
+{
+  m_Complex.SurfaceStar(v, m_Faces);
+  for (const auto & face : m_Faces)
+  {
+    if (IsTested(m_Complex, face.surface))
+    {
+      const TriangleIds triangle = { v, face.a, face.b };
+      insert ? m_Grid.Insert(triangle, m_Complex.Points()) : m_Grid.Erase(triangle, m_Complex.Points());
+    }
+  }
+}
+
+void
+MeshCollapser::Commit(IdType v, IdType w)
+{
+  double unused = 0.0;
+  Rate(v, w, 0.0, 1.0, unused); // for the change of volumes
+  for (std::size_t r = 0; r < m_Regions.size(); ++r)
+  {
+    m_Regions[r].error += m_VolumeChange[r];
+  }
+  const bool onSurface = m_Complex.Dimension(v) < 3;
+  if (onSurface)
+  {
+    UpdateGrid(v, false);
+    UpdateGrid(w, false);
+  }
+  const std::vector<IdType> around = m_Complex.Star(v);
+  const auto                densities = m_Densities.TakeFrom(around);
+  const auto                surfaces = m_SurfaceSamples.TakeFrom(m_Complex, around, onSurface ? v : -1);
+  const auto                cells = m_Complex.Collapse(v, w);
+  m_Densities.GiveTo(m_Complex, densities, cells);
+  m_SurfaceSamples.GiveTo(m_Complex, surfaces, m_Complex.Star(w));
+  if (onSurface)
+  {
+    UpdateGrid(w, true);
+  }
+  for (IdType t : cells)
+  {
+    m_Changed[t] = 1;
+  }
+  m_State[v] = State::Gone;
+  m_Dirty[w] = 1;
+  for (IdType p : m_Complex.PointNeighbors(w))
+  {
+    m_Dirty[p] = 1;
+  }
+}
+
+bool
+MeshCollapser::Requeue()
+{
+  bool any = false;
+  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
+  {
+    if (m_State[v] == State::Parked && m_Dirty[v])
+    {
+      m_State[v] = State::Queued;
+      m_Queue.push({ m_Cost[v], v });
+      any = true;
+    }
+  }
+  return any;
+}
+
+void
+MeshCollapser::NoteWhyParked()
+{
+  const auto before = m_Refused;
+  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
+  {
+    if (m_State[v] == State::Parked)
+    {
+      FindBest(v);
+    }
+  }
+  const auto grown = [&](MeshOperation reason) {
+    return m_Refused[static_cast<int>(reason)] > before[static_cast<int>(reason)];
+  };
+  m_BoundedBySurfaces = grown(MeshOperation::Distance) || grown(MeshOperation::Volume);
+  m_Refused = before;
+}
+
+std::size_t
+MeshCollapser::Run(IdType target, const std::function<void()> & progress)
+{
+  std::size_t collapses = 0;
+  while (m_Complex.AliveCells() > target)
+  {
+    if (m_Queue.empty() && !Requeue())
+    {
+      NoteWhyParked();
+      break;
+    }
+    const Entry entry = m_Queue.top();
+    m_Queue.pop();
+    const IdType v = entry.v;
+    if (m_Dirty[v] || m_Epoch[v] != m_Collapses || CheckExactly(v, m_Target[v]) != MeshOperation::Done)
+    {
+      m_Dirty[v] = 0;
+      m_Epoch[v] = m_Collapses;
+      const Candidate best = FindBest(v);
+      if (best.w < 0)
+      {
+        m_State[v] = State::Parked;
+        continue;
+      }
+      m_Target[v] = best.w;
+      m_Cost[v] = best.cost;
+      if (!m_Queue.empty() && best.cost > m_Queue.top().cost)
+      {
+        m_Queue.push({ best.cost, v });
+        continue;
+      }
+    }
+    Commit(v, m_Target[v]);
+    ++collapses;
+    ++m_Collapses;
+    if (m_Complex.AliveCells() < m_RefreshAt)
+    {
+      Refresh();
+    }
+    if (progress && collapses % 64 == 0)
+    {
+      progress();
+    }
+  }
+  return collapses;
+}
+
+void
+MeshCollapser::Refresh()
+{
+  Flip(FlipAngle);
+  m_RefreshAt = static_cast<IdType>(RefreshShare * m_Complex.AliveCells());
+  m_Queue = {};
+  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
+  {
+    if (m_State[v] != State::Gone)
+    {
+      m_Dirty[v] = 0;
+      m_Epoch[v] = m_Collapses;
+      const Candidate best = FindBest(v);
+      m_State[v] = best.w < 0 ? State::Parked : State::Queued;
+      m_Target[v] = best.w;
+      m_Cost[v] = best.cost;
+      if (best.w >= 0)
+      {
+        m_Queue.push({ best.cost, v });
+      }
+    }
+  }
+}
+
+std::size_t
+MeshCollapser::Flip(double angle)
+{
+  FlipParameters parameters;
+  parameters.targetAngle = angle;
+  parameters.keepCellCount = true;
+  const auto report = ImproveByFlips(m_Complex, parameters, [this](const FlipResult & flip) {
+    m_Changed.resize(m_Complex.Size(), 0);
+    m_Densities.GiveTo(m_Complex, m_Densities.TakeFrom(flip.removed), flip.created);
+    m_SurfaceSamples.GiveTo(m_Complex, m_SurfaceSamples.TakeFrom(m_Complex, flip.removed, -1), flip.created);
+    for (IdType t : flip.created)
+    {
+      m_Changed[t] = 1;
+      for (IdType p : m_Complex.Cell(t))
+      {
+        m_Dirty[p] = 1;
+      }
+    }
+  });
+  return report.done;
+}
+
+void
+MeshCollapser::ClearChanged()
+{
+  std::fill(m_Changed.begin(), m_Changed.end(), 0);
+}
+} // namespace bone
