@@ -5,6 +5,7 @@
 
 #include <Eigen/QR>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -12,37 +13,34 @@ namespace bone
 {
 namespace
 {
-std::vector<Barycentric>
-LatticePoints(int lattice)
+/** All (i, j, k, l) of sum `lattice`, of any order, in the order of the coefficients. */
+std::vector<std::array<int, 4>>
+LatticeExponents(int lattice)
 {
-  std::vector<Barycentric> points;
+  std::vector<std::array<int, 4>> exponents;
   for (int i = lattice; i >= 0; --i)
   {
     for (int j = lattice - i; j >= 0; --j)
     {
       for (int k = lattice - i - j; k >= 0; --k)
       {
-        points.push_back((Barycentric(i, j, k, lattice - i - j - k).array() + 0.5) / (lattice + 2));
+        exponents.push_back({ i, j, k, lattice - i - j - k });
       }
     }
   }
-  return points;
+  return exponents;
 }
 
-/** Coefficients from values at the points: R^-1 Q^T of the points-by-coefficients matrix of basis values. */
-Eigen::MatrixXd
-PseudoInverse(int degree, const std::vector<Barycentric> & points)
+std::vector<Barycentric>
+LatticePoints(int degree, int lattice)
 {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Index rows = static_cast<Eigen::Index>(points.size()), columns = BernsteinCount(degree);
-  RowMajor           basis(rows, columns);
-  for (Eigen::Index p = 0; p < rows; ++p)
+  const double             inset = degree <= 2 ? 0.5 : 0.25;
+  std::vector<Barycentric> points;
+  for (const auto & [i, j, k, l] : LatticeExponents(lattice))
   {
-    BernsteinBasis(degree, points[p], basis.row(p).data());
+    points.push_back((Barycentric(i, j, k, l).array() + inset) / (lattice + 4 * inset));
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
-  const Eigen::MatrixXd                       q = qr.householderQ() * Eigen::MatrixXd::Identity(rows, columns);
-  return qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>().solve(q.transpose());
+  return points;
 }
 
 /** Matrix that elevates coefficients by one degree. */
@@ -56,6 +54,35 @@ ElevationMatrix(int from)
     BernsteinElevate(from, unit.data(), from + 1, elevation.col(c).data());
   }
   return elevation;
+}
+
+/** Coefficients from values at the points. The rows of the least-squares problem are the basis values at the points
+ * and, with Tikhonov's term, the coefficients themselves; its solution R^-1 Q^T applied to the values and to `low`. */
+Eigen::MatrixXd
+PseudoInverse(int degree, const std::vector<Barycentric> & points, double tikhonov)
+{
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index samples = static_cast<Eigen::Index>(points.size()), count = BernsteinCount(degree);
+  const bool         damped = tikhonov > 0 && degree > 1;
+  const double       weight = std::sqrt(tikhonov * static_cast<double>(samples) / static_cast<double>(count));
+  RowMajor           rows = RowMajor::Zero(damped ? samples + count : samples, count);
+  for (Eigen::Index s = 0; s < samples; ++s)
+  {
+    BernsteinBasis(degree, points[s], rows.row(s).data());
+  }
+  if (damped)
+  {
+    rows.bottomRows(count).diagonal().setConstant(weight);
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
+  const Eigen::MatrixXd                       q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.rows(), count);
+  Eigen::MatrixXd                             right = q.topRows(samples).transpose();
+  if (damped)
+  {
+    const Eigen::MatrixXd low = ElevationMatrix(degree - 1) * PseudoInverse(degree - 1, points, tikhonov);
+    right += weight * q.bottomRows(count).transpose() * low;
+  }
+  return qr.matrixQR().topRows(count).triangularView<Eigen::Upper>().solve(right);
 }
 } // namespace
 
@@ -82,7 +109,7 @@ DensityFitKernel::LatticeWithPoints(int degree, double points, int largest)
   return lattice;
 }
 
-DensityFitKernel::DensityFitKernel(int degree, int lattice, double keep)
+DensityFitKernel::DensityFitKernel(int degree, int lattice, double tikhonov)
   : m_Degree(degree)
   , m_Lattice(lattice)
 {
@@ -92,18 +119,13 @@ DensityFitKernel::DensityFitKernel(int degree, int lattice, double keep)
                                 std::to_string(MinimumLattice(degree)) + " or more, not " + std::to_string(lattice) +
                                 ".");
   }
-  if (!(keep >= 0 && keep <= 1))
+  if (!(tikhonov >= 0 && std::isfinite(tikhonov)))
   {
-    throw std::invalid_argument("The kept share of the highest degree must lie in [0, 1], not " + std::to_string(keep) +
-                                ".");
+    throw std::invalid_argument("The weight of Tikhonov's term must be 0 or more and finite, not " +
+                                std::to_string(tikhonov) + ".");
   }
-  m_Points = LatticePoints(lattice);
-  m_PseudoInverse = PseudoInverse(degree, m_Points);
-  if (keep < 1 && degree > 0)
-  {
-    m_PseudoInverse =
-      keep * m_PseudoInverse + (1 - keep) * ElevationMatrix(degree - 1) * PseudoInverse(degree - 1, m_Points);
-  }
+  m_Points = LatticePoints(degree, lattice);
+  m_PseudoInverse = PseudoInverse(degree, m_Points, tikhonov);
 }
 
 void

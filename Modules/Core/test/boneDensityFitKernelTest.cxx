@@ -139,19 +139,48 @@ TEST_P(FitOfDegree, ManyAtOnceAreTheSameAsOneByOne)
 
 INSTANTIATE_TEST_SUITE_P(DensityFitKernel, FitOfDegree, testing::Range(0, MaximumBernsteinDegree + 1));
 
-TEST(DensityFitKernel, DampingBlendsTheFitWithThatOfTheDegreeBelow)
+double
+Overshoot(const std::vector<double> & c, const std::vector<double> & values)
 {
-  for (int degree = 1; degree <= MaximumBernsteinDegree; ++degree)
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto [least, most] = std::minmax_element(c.begin(), c.end());
+  return std::max(*most - *high, *low - *least);
+}
+
+TEST(DensityFitKernel, TikhonovsTermTendsToTheLinearFit)
+{
+  for (int degree = 2; degree <= MaximumBernsteinDegree; degree += 3)
   {
     const int                 lattice = DensityFitKernel::MinimumLattice(degree);
-    const DensityFitKernel    plain(degree, lattice), damped(degree, lattice, 0.25), low(degree - 1, lattice);
+    const DensityFitKernel    plain(degree, lattice), stiff(degree, lattice, 1e9);
     const std::vector<double> values = RandomValues(plain.SamplePoints().size(), 23);
-    const auto                a = Fitted(plain, values), b = Fitted(damped, values), c = Fitted(low, values);
-    std::vector<double>       elevated(a.size());
-    BernsteinElevate(degree - 1, c.data(), degree, elevated.data());
-    for (std::size_t i = 0; i < a.size(); ++i)
+    const auto                fit = Fitted(stiff, values);
+    // Second differences along an edge vanish for a linear polynomial.
+    const double bend = fit[BernsteinIndex(degree, degree, 0, 0)] - 2 * fit[BernsteinIndex(degree, degree - 1, 1, 0)] +
+                        fit[BernsteinIndex(degree, degree - 2, 2, 0)];
+    EXPECT_NEAR(bend, 0, 1e-6);
+  }
+}
+
+TEST(DensityFitKernel, TikhonovsTermKeepsLinearFieldsAndBoundsControlValues)
+{
+  const Barycentric slope(3, -1, 2, 7);
+  for (int degree = 1; degree <= MaximumBernsteinDegree; ++degree)
+  {
+    const int              lattice = DensityFitKernel::MinimumLattice(degree);
+    const DensityFitKernel plain(degree, lattice), damped(degree, lattice, 1e-3);
+    const auto          linear = Fitted(damped, Sampled(damped, [&](const Barycentric & mu) { return slope.dot(mu); }));
+    std::vector<double> expected(linear.size());
+    BernsteinElevate(1, slope.data(), degree, expected.data());
+    for (std::size_t i = 0; i < linear.size(); ++i)
     {
-      EXPECT_NEAR(b[i], elevated[i] + 0.25 * (a[i] - elevated[i]), 1e-11);
+      EXPECT_NEAR(linear[i], expected[i], 1e-10);
+    }
+    const std::vector<double> noise = RandomValues(plain.SamplePoints().size(), 29);
+    if (degree > 2)
+    {
+      const double share = degree < 6 ? 1.0 : 0.5;
+      EXPECT_LT(Overshoot(Fitted(damped, noise), noise), share * Overshoot(Fitted(plain, noise), noise));
     }
   }
 }
@@ -161,7 +190,7 @@ TEST(DensityFitKernel, RefusesWhatItCannotFit)
   EXPECT_THROW(DensityFitKernel(-1, 5), std::out_of_range);
   EXPECT_THROW(DensityFitKernel(MaximumBernsteinDegree + 1, 20), std::out_of_range);
   EXPECT_THROW(DensityFitKernel(3, DensityFitKernel::MinimumLattice(3) - 1), std::invalid_argument);
-  EXPECT_THROW(DensityFitKernel(3, 6, 1.5), std::invalid_argument);
+  EXPECT_THROW(DensityFitKernel(3, 6, -1e-3), std::invalid_argument);
   EXPECT_THROW(DensityFitKernel(3, 6, std::nan("")), std::invalid_argument);
 }
 
