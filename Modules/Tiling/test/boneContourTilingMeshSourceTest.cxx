@@ -194,49 +194,6 @@ TEST(ContourTilingMeshSource, KeepsAHoleThroughTheBone)
   EXPECT_NEAR(Volume(mesh, 0), 6 * Pi * (120 - 20) * PolygonShare(24), 1e-6);
 }
 
-TEST(ContourTilingMeshSource, ClosesAnOpenRing)
-{
-  // Two slices of a C, then two of a closed ring that turns into a disk: a tunnel open to one side below.
-  ContourStack::SliceContainer container(6);
-  for (int k = 0; k < 6; ++k)
-  {
-    container[k].origin = Vector3(0, 0, 2.0 * k);
-    bone::Contour outer;
-    const double  mouth = k < 2 ? 0.5 : 0.0;
-    const int     points = 40;
-    for (int i = 0; i < points; ++i)
-    {
-      const double t = mouth + (2 * Pi - 2 * mouth) * i / (k < 2 ? points - 1 : points);
-      outer.points.emplace_back(14 * std::cos(t), 14 * std::sin(t), 2.0 * k);
-    }
-    bone::Contour hole;
-    hole.id = 1;
-    hole.region = 0;
-    const double r = k < 4 ? 6.0 : 3.0;
-    for (int i = 0; i < 20; ++i)
-    {
-      const double t = mouth + (2 * Pi - 2 * mouth) * i / (k < 2 ? 19 : 20);
-      hole.points.emplace_back(r * std::cos(-t), r * std::sin(-t), 2.0 * k);
-    }
-    if (k < 2)
-    {
-      outer.points.insert(outer.points.end(), hole.points.begin(), hole.points.end());
-    }
-    container[k].contours.push_back(outer);
-    if (k >= 2 && k < 5)
-    {
-      container[k].contours.push_back(hole);
-    }
-  }
-  auto stack = ContourStack::New();
-  stack->SetSlices(container);
-  stack->SetOpenStart(true);
-  const auto validation = bone::ValidateMesh(Tile(stack));
-  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
-  EXPECT_EQ(validation.components, 1);
-  EXPECT_EQ(validation.boundaryEuler, 2);
-}
-
 TEST(ContourTilingMeshSource, IsValidOnRandomStacks)
 {
   for (unsigned seed = 0; seed < 12; ++seed)
