@@ -30,12 +30,24 @@ public:
   Vector3
   Project(const TetraComplex & complex, IdType p, const Vector3 & x) const;
 
+  /** Where a surface point is to go whose neighbours have the mean x. On ridges and tips, where the surface turns too
+   * sharply for the mean to lie beside it, that is the point's own faired place: sliding down would cut them off. */
+  Vector3
+  Place(const TetraComplex & complex, IdType p, const Vector3 & x) const
+  {
+    return m_IsRidge[p] ? m_Faired[p] : Project(complex, p, x);
+  }
+
 private:
   std::vector<Vector3>
   Fair(const TetraComplex & complex, double distanceBound, int iterations) const;
   void
-  BuildTrees(const TetraComplex & complex, const std::vector<Vector3> & points);
+  FindRidges(const TetraComplex & complex);
+  void
+  BuildTrees(const TetraComplex & complex);
 
+  std::vector<Vector3>      m_Faired;  ///< #p
+  std::vector<char>         m_IsRidge; ///< #p
   std::vector<int>          m_Stratum; ///< #p, index of the tree, -1 for none
   std::vector<TriangleTree> m_Trees;
 };

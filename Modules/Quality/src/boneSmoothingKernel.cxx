@@ -228,7 +228,7 @@ EnhancedIteration(TetraComplex &              complex,
       continue;
     }
     const Vector3 old = complex.Points()[p];
-    Vector3       x = target.Project(complex, p, MeanOf(complex.Points(), StratumNeighbors(complex, p)));
+    Vector3       x = target.Place(complex, p, MeanOf(complex.Points(), StratumNeighbors(complex, p)));
     MeshOperation outcome = mover.TryMove(p, x, cosineFloor);
     int           step = 0;
     for (; outcome != MeshOperation::Done && step < MaximumSteps; ++step)

@@ -12,13 +12,41 @@ namespace
 {
 constexpr double Lambda = 0.5;
 constexpr double Mu = -0.53;
+/** Area of the faces at a point seen along their mean normal, as a share of their area: below this it is on a ridge. */
+constexpr double RidgeShare = 0.9;
 constexpr int    NoSurface = -1;
 } // namespace
 
 SurfaceTarget::SurfaceTarget(const TetraComplex & complex, double distanceBound, int fairingIterations)
-  : m_Stratum(complex.Points().size(), -1)
+  : m_Faired(Fair(complex, distanceBound, fairingIterations))
+  , m_IsRidge(complex.Points().size(), 0)
+  , m_Stratum(complex.Points().size(), -1)
 {
-  BuildTrees(complex, Fair(complex, distanceBound, fairingIterations));
+  FindRidges(complex);
+  BuildTrees(complex);
+}
+
+void
+SurfaceTarget::FindRidges(const TetraComplex & complex)
+{
+  std::vector<TetraComplex::SurfaceFace> faces;
+  for (IdType p = 0; p < static_cast<IdType>(m_Faired.size()); ++p)
+  {
+    if (complex.Dimension(p) != 2)
+    {
+      continue;
+    }
+    complex.SurfaceStar(p, faces);
+    Vector3 sum = Vector3::Zero();
+    double  area = 0.0;
+    for (const auto & face : faces)
+    {
+      const Vector3 normal = (m_Faired[face.a] - m_Faired[p]).cross(m_Faired[face.b] - m_Faired[p]);
+      sum += normal;
+      area += normal.norm();
+    }
+    m_IsRidge[p] = sum.norm() < RidgeShare * area;
+  }
 }
 
 std::vector<Vector3>
@@ -83,9 +111,10 @@ SurfaceTarget::Fair(const TetraComplex & complex, double distanceBound, int iter
 }
 
 void
-SurfaceTarget::BuildTrees(const TetraComplex & complex, const std::vector<Vector3> & points)
+SurfaceTarget::BuildTrees(const TetraComplex & complex)
 {
-  const SurfaceComplex & surfaces = complex.Surfaces();
+  const std::vector<Vector3> & points = m_Faired;
+  const SurfaceComplex &       surfaces = complex.Surfaces();
   // A stratum is named by the surfaces that meet in it: one for a surface, several for a curve.
   std::map<std::vector<int>, int>                  number;
   std::vector<std::vector<TriangleTree::Triangle>> content;
