@@ -93,6 +93,10 @@ BernsteinElevate(int from, const double * c, int to, double * elevated);
  */
 double
 BernsteinInnerProduct(int degreeF, const double * f, int degreeG, const double * g, double volume);
+
+/** Inner products of the two bases' functions on a tetrahedron of volume 1, row-major, BernsteinCount(degreeF) rows. */
+const std::vector<double> &
+BernsteinGramMatrix(int degreeF, int degreeG);
 /** \} */
 
 /** Barycentric coordinates of x in the tetrahedron a, b, c, d (not flat). */

@@ -128,37 +128,29 @@ NestedValue(const double * c, const Barycentric & mu)
   return value * Factorial(VDegree);
 }
 
-/** Gram matrix of two bases on a tetrahedron of volume 1, row-major; made once for each pair of degrees. */
-const std::vector<double> &
-GramMatrix(int rows, int columns)
+std::vector<double>
+MakeGramMatrix(int rows, int columns)
 {
-  constexpr int                                             degrees = MaximumBernsteinDegree + 1;
-  static std::array<std::vector<double>, degrees * degrees> matrices;
-  static std::array<std::once_flag, degrees * degrees>      made;
-  const int                                                 slot = rows * degrees + columns;
-  std::call_once(made[slot], [&] {
-    const int           n = BernsteinCount(rows), m = BernsteinCount(columns), total = rows + columns;
-    const double        scale = Factorial(rows) * Factorial(columns) / Factorial(total) / BernsteinCount(total);
-    std::vector<double> gram(static_cast<std::size_t>(n) * m);
-    for (int p = 0; p < n; ++p)
+  const int           n = BernsteinCount(rows), m = BernsteinCount(columns), total = rows + columns;
+  const double        scale = Factorial(rows) * Factorial(columns) / Factorial(total) / BernsteinCount(total);
+  std::vector<double> gram(static_cast<std::size_t>(n) * m);
+  for (int p = 0; p < n; ++p)
+  {
+    const auto & a = Order.exponents[p];
+    for (int q = 0; q < m; ++q)
     {
-      const auto & a = Order.exponents[p];
-      for (int q = 0; q < m; ++q)
+      const auto &             b = Order.exponents[q];
+      const std::array<int, 4> low = { rows - a[0] - a[1] - a[2], a[0], a[1], a[2] };
+      const std::array<int, 4> high = { columns - b[0] - b[1] - b[2], b[0], b[1], b[2] };
+      double                   value = scale;
+      for (int i = 0; i < 4; ++i)
       {
-        const auto &             b = Order.exponents[q];
-        const std::array<int, 4> low = { rows - a[0] - a[1] - a[2], a[0], a[1], a[2] };
-        const std::array<int, 4> high = { columns - b[0] - b[1] - b[2], b[0], b[1], b[2] };
-        double                   value = scale;
-        for (int i = 0; i < 4; ++i)
-        {
-          value *= Factorial(low[i] + high[i]) / (Factorial(low[i]) * Factorial(high[i]));
-        }
-        gram[static_cast<std::size_t>(p) * m + q] = value;
+        value *= Factorial(low[i] + high[i]) / (Factorial(low[i]) * Factorial(high[i]));
       }
+      gram[static_cast<std::size_t>(p) * m + q] = value;
     }
-    matrices[slot] = std::move(gram);
-  });
-  return matrices[slot];
+  }
+  return gram;
 }
 } // namespace
 
@@ -357,12 +349,23 @@ BernsteinElevate(int from, const double * c, int to, double * elevated)
   std::copy_n(now.data(), BernsteinCount(to), elevated);
 }
 
-double
-BernsteinInnerProduct(int degreeF, const double * f, int degreeG, const double * g, double volume)
+const std::vector<double> &
+BernsteinGramMatrix(int degreeF, int degreeG)
 {
   CheckDegree(degreeF);
   CheckDegree(degreeG);
-  const double * row = GramMatrix(degreeF, degreeG).data();
+  constexpr int                                             degrees = MaximumBernsteinDegree + 1;
+  static std::array<std::vector<double>, degrees * degrees> matrices;
+  static std::array<std::once_flag, degrees * degrees>      made;
+  const int                                                 slot = degreeF * degrees + degreeG;
+  std::call_once(made[slot], [&] { matrices[slot] = MakeGramMatrix(degreeF, degreeG); });
+  return matrices[slot];
+}
+
+double
+BernsteinInnerProduct(int degreeF, const double * f, int degreeG, const double * g, double volume)
+{
+  const double * row = BernsteinGramMatrix(degreeF, degreeG).data();
   const int      n = BernsteinCount(degreeF), m = BernsteinCount(degreeG);
   double         sum = 0;
   for (int p = 0; p < n; ++p, row += m)

@@ -125,6 +125,8 @@ private:
   double          m_OutsideFraction{ 0.0 };
   std::size_t     m_NumberOfFreeCoefficients{ 0 };
 };
+
+extern template class DensityFitFilter<itk::Image<float, 3>, DensityMesh<double>>;
 } // namespace bone
 
 #ifndef ITK_MANUAL_INSTANTIATION

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace bone
 {
@@ -181,7 +182,14 @@ DensityFitFilter<TImage, TMesh>::GenerateData()
         throw itk::ProcessAborted(__FILE__, __LINE__);
       }
     };
-    m_NumberOfFreeCoefficients = MakeDensityContinuous(arrays, loop).freeCoefficients;
+    try
+    {
+      m_NumberOfFreeCoefficients = MakeDensityContinuous(arrays, loop).freeCoefficients;
+    }
+    catch (const std::logic_error & error)
+    {
+      itkExceptionMacro("" << error.what());
+    }
   }
   TMesh * output = this->GetOutput();
   output->SetArrays(std::move(arrays));

@@ -92,6 +92,8 @@ private:
   DirectionType m_Direction;
   PixelType     m_OutsideValue;
 };
+
+extern template class DensityImageFilter<DensityMesh<double>, itk::Image<float, 3>>;
 } // namespace bone
 
 #ifndef ITK_MANUAL_INSTANTIATION

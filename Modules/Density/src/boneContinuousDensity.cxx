@@ -21,24 +21,6 @@ constexpr std::size_t ChunkSize = 8192; // coefficients of one partial sum
 
 using Vector = Eigen::VectorXd;
 
-/** Gram matrix of the basis on a tetrahedron of volume 1. */
-Eigen::MatrixXd
-MassMatrix(int degree)
-{
-  const int       count = BernsteinCount(degree);
-  Eigen::MatrixXd mass(count, count);
-  for (int i = 0; i < count; ++i)
-  {
-    const Vector a = Vector::Unit(count, i);
-    for (int j = 0; j < count; ++j)
-    {
-      const Vector b = Vector::Unit(count, j);
-      mass(i, j) = BernsteinInnerProduct(degree, a.data(), degree, b.data(), 1.0);
-    }
-  }
-  return mass;
-}
-
 /** The assembled mass matrix and its preconditioner, applied without being stored. */
 class MassSystem
 {
@@ -48,7 +30,9 @@ public:
     , m_Loop(loop)
     , m_Cells(mesh.tetrahedra.size())
     , m_Count(BernsteinCount(mesh.maximumDegree))
-    , m_Mass(MassMatrix(mesh.maximumDegree))
+    , m_Mass(Eigen::Map<const Eigen::MatrixXd>(BernsteinGramMatrix(mesh.maximumDegree, mesh.maximumDegree).data(),
+                                               m_Count,
+                                               m_Count))
     , m_Inverse(m_Mass.ldlt().solve(Eigen::MatrixXd::Identity(m_Count, m_Count)))
     , m_Volume(m_Cells)
     , m_Local(m_Cells * m_Count)

@@ -1,0 +1,11 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneDensityFitFilter.h"
+#include "boneDensityImageFilter.h"
+
+namespace bone
+{
+template class DensityFitFilter<itk::Image<float, 3>, DensityMesh<double>>;
+template class DensityImageFilter<DensityMesh<double>, itk::Image<float, 3>>;
+} // namespace bone
