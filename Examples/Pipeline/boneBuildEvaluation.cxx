@@ -118,11 +118,10 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   const Window window{ percentiles[0] - 0.3 * range, percentiles[1] + 0.05 * range };
   evaluation.slices = DrawSlices(evidence.ct, pipeline.GetMedialAxis()->GetOutput(), window);
   const double cutScale = 0.25 * range;
-  evaluation.cutPlane = DrawComparison(SamplePlane(evidence.ct, cut), "CT", cuts, window, cutScale, "HU");
+  evaluation.cutPlane = DrawComparison(SamplePlane(evidence.ct, cut), "CT", cuts, window, cutScale);
   const Panel  panel = ToPanel(reference);
   const double largest = LargestValue(panel);
-  evaluation.radiographs =
-    DrawComparison(panel, "CT radiograph", radiographs, { 0.0, 0.9 * largest }, 0.1 * largest, "HU mm");
+  evaluation.radiographs = DrawComparison(panel, "CT", radiographs, { 0.0, 0.9 * largest }, 0.1 * largest);
   return evaluation;
 }
 

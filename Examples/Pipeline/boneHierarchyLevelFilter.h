@@ -43,6 +43,10 @@ public:
 protected:
   HierarchyLevelFilter();
   ~HierarchyLevelFilter() override = default;
+  /** A mesh's information does not follow from that of a hierarchy. */
+  void
+  GenerateOutputInformation() override
+  {}
   void
   GenerateData() override;
   void

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace bone
@@ -56,8 +57,7 @@ std::string
 Rounded(double value)
 {
   std::ostringstream text;
-  text.precision(3);
-  text << value;
+  text << std::fixed << std::setprecision(std::abs(value) < 10.0 ? 1 : 0) << value;
   return text.str();
 }
 } // namespace
@@ -97,8 +97,7 @@ DrawComparison(const Panel &                   reference,
                const std::string &             referenceName,
                const std::vector<LevelPanel> & levels,
                const Window &                  window,
-               double                          scale,
-               const std::string &             unit)
+               double                          scale)
 {
   const int width = reference.columns + Gap;
   const int height = reference.rows + Caption + Gap;
@@ -111,12 +110,16 @@ DrawComparison(const Panel &                   reference,
     for (std::size_t k = 0; k < difference.values.size(); ++k)
     {
       difference.values[k] -= reference.values[k];
+      if (model.values[k] == 0.0F && reference.values[k] == 0.0F)
+      {
+        difference.values[k] = std::nanf(""); // beside the bone on a radiograph
+      }
     }
     canvas.DrawText(Gap, row + 4, referenceName);
     canvas.DrawPanel(Gap, row + Caption, reference, window);
     canvas.DrawText(Gap + width, row + 4, levels[i].name);
     canvas.DrawPanel(Gap + width, row + Caption, model, window);
-    canvas.DrawText(Gap + 2 * width, row + 4, "difference +-" + Rounded(scale) + " " + unit);
+    canvas.DrawText(Gap + 2 * width, row + 4, "model - CT, +-" + Rounded(scale));
     canvas.DrawDifference(Gap + 2 * width, row + Caption, difference, scale);
   }
   return canvas.GetImage();

@@ -34,8 +34,7 @@ DrawComparison(const Panel &                   reference,
                const std::string &             referenceName,
                const std::vector<LevelPanel> & levels,
                const Window &                  window,
-               double                          scale,
-               const std::string &             unit);
+               double                          scale);
 /** \} */
 } // namespace bone
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 
 namespace bone
 {
@@ -20,22 +21,52 @@ EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra)
   return resolution;
 }
 
-double
-AdjustContourSpacing(BuildPipeline &                             pipeline,
-                     double                                      spacing,
-                     IdType                                      tetrahedra,
-                     const std::function<void(double, IdType)> & tried)
+namespace
 {
-  constexpr double   tolerance = 0.08;
-  constexpr int      maximumTrials = 6;
-  std::exception_ptr failure;
-  double             best = 0.0;
-  double             bestError = 0.0;
+void
+SetResolution(BuildPipeline & pipeline, const Resolution & resolution)
+{
+  pipeline.GetSnake()->SetSliceStep(resolution.sliceStep);
+  pipeline.SetContourSpacing(resolution.contourSpacing);
+}
+
+/** The resolution to try next after one that gave `ratio` times the number asked for. */
+Resolution
+NextResolution(const Resolution & last, double ratio, const ResolutionSearch & search)
+{
+  constexpr double far = 0.3;
+  Resolution       next = last;
+  double           remaining = ratio;
+  if (!search.sliceStepFixed && std::abs(std::log(ratio)) > far)
+  {
+    next.sliceStep = std::max(search.sliceSpacing, last.sliceStep * std::sqrt(ratio));
+    remaining = ratio * last.sliceStep / next.sliceStep;
+  }
+  // On fixed slices the number of tetrahedra goes with the number of samples, 1 / spacing.
+  next.contourSpacing = last.contourSpacing * std::clamp(remaining, 0.4, 2.5);
+  return next;
+}
+} // namespace
+
+Resolution
+AdjustResolution(BuildPipeline &                                         pipeline,
+                 const Resolution &                                      start,
+                 const ResolutionSearch &                                search,
+                 const std::function<void(const Resolution &, IdType)> & tried)
+{
+  constexpr double          tolerance = 0.08;
+  constexpr int             maximumTrials = 6;
+  std::exception_ptr        failure;
+  std::optional<Resolution> best;
+  double                    bestError = 0.0;
+  Resolution                resolution = start;
   for (int trial = 0; trial < maximumTrials; ++trial)
   {
+    SetResolution(pipeline, resolution);
+    // A failure of the contours is one of the input.
+    pipeline.GetSnake()->Update();
     try
     {
-      pipeline.SetContourSpacing(spacing);
       pipeline.GetTiling()->Update();
     }
     catch (const itk::ProcessAborted &)
@@ -45,30 +76,29 @@ AdjustContourSpacing(BuildPipeline &                             pipeline,
     catch (const itk::ExceptionObject &)
     {
       failure = std::current_exception();
-      spacing *= 0.94;
+      resolution.contourSpacing *= 0.94;
       continue;
     }
     const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
-    tried(spacing, count);
-    const double ratio = static_cast<double>(count) / static_cast<double>(tetrahedra);
-    const double error = std::abs(std::log(ratio));
-    if (best == 0.0 || error < bestError)
+    tried(resolution, count);
+    const double ratio = static_cast<double>(count) / static_cast<double>(search.tetrahedra);
+    if (!best || std::abs(std::log(ratio)) < bestError)
     {
-      best = spacing;
-      bestError = error;
+      best = resolution;
+      bestError = std::abs(std::log(ratio));
     }
     if (std::abs(ratio - 1.0) <= tolerance)
     {
       break;
     }
-    // On fixed slices the number of tetrahedra goes with the number of samples, 1 / spacing.
-    spacing *= std::clamp(ratio, 0.4, 2.5);
+    resolution = NextResolution(resolution, ratio, search);
   }
-  if (best == 0.0)
+  if (!best)
   {
     std::rethrow_exception(failure);
   }
-  pipeline.SetContourSpacing(best);
-  return best;
+  SetResolution(pipeline, *best);
+  pipeline.GetTiling()->Update();
+  return *best;
 }
 } // namespace bone

@@ -24,14 +24,23 @@ struct Resolution
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra);
 
-/** Changes the pipeline's contour spacing until its tiling has the number of tetrahedra within 8 %, in at most six
- * tilings, and leaves the best one set. A spacing at which the tiling fails is passed over; the last failure is thrown
- * where all fail. `tried` is told of each. Returns the spacing. */
-double
-AdjustContourSpacing(BuildPipeline &                             pipeline,
-                     double                                      spacing,
-                     IdType                                      tetrahedra,
-                     const std::function<void(double, IdType)> & tried);
+/** What may be changed to come to a number of tetrahedra. */
+struct ResolutionSearch
+{
+  IdType tetrahedra{ 0 };
+  double sliceSpacing{ 0.0 }; ///< of the image, mm; the slice step is not made smaller
+  bool   sliceStepFixed{ false };
+};
+
+/** Sets slice step and contour spacing of the pipeline, beginning with `start`, until its tiling has the number of
+ * tetrahedra within 8 %, in at most six tilings, and leaves the best ones set and the tiling up to date. Far from the
+ * number both are changed, near it the spacing alone, which leaves the contours as they are. A resolution at which the
+ * tiling fails is passed over; the last failure is thrown where all fail. `tried` is told of each. */
+Resolution
+AdjustResolution(BuildPipeline &                                         pipeline,
+                 const Resolution &                                      start,
+                 const ResolutionSearch &                                search,
+                 const std::function<void(const Resolution &, IdType)> & tried);
 } // namespace bone
 
 #endif

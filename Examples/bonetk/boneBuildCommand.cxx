@@ -123,28 +123,29 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
   pipeline.SetInitialContours(input.contours);
   pipeline.GetSnake()->SetLabel(options.bone.label);
   pipeline.GetSnake()->SetAxis(static_cast<unsigned int>(options.axis));
-  pipeline.GetSnake()->SetSliceStep(resolution.sliceStep);
   pipeline.GetFit()->SetDegree(options.degree);
   pipeline.GetFit()->SetContinuous(options.continuous);
-  pipeline.GetSnake()->Update();
+  if (options.contourSpacing > 0.0)
+  {
+    resolution.contourSpacing = options.contourSpacing;
+    pipeline.GetSnake()->SetSliceStep(resolution.sliceStep);
+    pipeline.SetContourSpacing(resolution.contourSpacing);
+    pipeline.GetTiling()->Update();
+  }
+  else
+  {
+    const ResolutionSearch search{ options.tetrahedra, sliceSpacing, options.sliceStep > 0.0 };
+    resolution = AdjustResolution(pipeline, resolution, search, [&](const Resolution & tried, IdType count) {
+      std::ostringstream line;
+      line << "slices " << tried.sliceStep << " mm, contour points at most " << tried.contourSpacing
+           << " mm apart: " << count << " tetrahedra\n";
+      session.Print(line.str());
+    });
+  }
   for (const std::string & warning : pipeline.GetSnake()->GetWarnings())
   {
     session.Warn(warning);
   }
-  if (options.contourSpacing > 0.0)
-  {
-    resolution.contourSpacing = options.contourSpacing;
-    pipeline.SetContourSpacing(resolution.contourSpacing);
-    pipeline.GetTiling()->Update();
-    return resolution;
-  }
-  resolution.contourSpacing =
-    AdjustContourSpacing(pipeline, resolution.contourSpacing, options.tetrahedra, [&](double spacing, IdType count) {
-      std::ostringstream line;
-      line << "contour points " << spacing << " mm apart: " << count << " tetrahedra\n";
-      session.Print(line.str());
-    });
-  pipeline.GetTiling()->Update();
   return resolution;
 }
 
@@ -152,10 +153,9 @@ void
 WriteOutputs(const Evaluation &  evaluation,
              const BuildReport & report,
              BuildPipeline &     pipeline,
-             const std::string & path)
+             StagingFolder &     staging)
 {
-  StagingFolder staging(path);
-  const auto    in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
+  const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
   WriteContours(pipeline.GetMedialAxis()->GetOutput(), in("contours.vtp"));
   WriteHierarchy(pipeline.GetCollapse()->GetOutput(), in("model"));
   auto geometry = const_cast<XRayGeometry *>(pipeline.GetRadiograph(0)->GetGeometry());
@@ -176,8 +176,9 @@ void
 Run(const Options & options, Session & session)
 {
   options.bone.Verify();
-  auto       before = std::chrono::steady_clock::now();
-  const auto lap = [&before] {
+  StagingFolder staging(options.output);
+  auto          before = std::chrono::steady_clock::now();
+  const auto    lap = [&before] {
     const auto   now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;
@@ -219,7 +220,7 @@ Run(const Options & options, Session & session)
   report.slices = pipeline.GetSnake()->GetOutput()->GetSlices().size();
   report.levels = evaluation.levels;
   report.warnings = session.GetWarnings();
-  WriteOutputs(evaluation, report, pipeline, options.output);
+  WriteOutputs(evaluation, report, pipeline, staging);
   session.Print("\n" + ToText(report) + "\nwritten to " + options.output + "\n");
 }
 } // namespace

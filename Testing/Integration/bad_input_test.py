@@ -70,7 +70,7 @@ class BadInput(TestCase):
 
     def test_all_air(self):
         write_image("air.nii.gz", numpy.full(self.labels.shape, -1000, numpy.int16))
-        self.refuse_ct("air.nii.gz", "HU")
+        self.refuse_ct("air.nii.gz", "no bone")
 
     def test_label_that_is_not_there(self):
         self.refuse("build", "ct.nii.gz", "--labels", "labels.nii.gz", "--label", 7, "-o", "out", says="label 7")

@@ -1,4 +1,5 @@
 """What the integration tests share: running bonetk, small inputs, and the rules that every command keeps."""
+import json
 import os
 import subprocess
 import sys
@@ -27,6 +28,16 @@ def write_image(path, voxels, spacing=(1.0, 1.0, 1.0)):
     nibabel.save(nibabel.Nifti1Image(voxels, numpy.diag(list(spacing[:3]) + [1.0])), path)
 
 
+def read_json(path):
+    with open(path) as file:
+        return json.load(file)
+
+
+def write_json(content, path):
+    with open(path, "w") as file:
+        json.dump(content, file)
+
+
 class TestCase(unittest.TestCase):
     """A test in an empty folder of its own."""
 
@@ -42,13 +53,13 @@ class TestCase(unittest.TestCase):
         self.assertEqual(code, 0, f"bonetk {arguments}: {err}")
         return out, err
 
-    def refuse(self, *arguments, code=1, says="", output=None, **options):
-        """The command must fail with one line that says `says`, and leave nothing behind."""
+    def refuse(self, *arguments, code=1, says="", lines=1, **options):
+        """The command must fail with `lines` lines at most, the last of which says `says`, and leave nothing behind."""
         files = sorted(os.listdir())
         got, out, err = bonetk(*arguments, **options)
         self.assertEqual(got, code, f"bonetk {arguments}: {out}{err}")
-        self.assertEqual(len(err.splitlines()), 1, f"bonetk {arguments}: {err}")
-        self.assertTrue(err.startswith("bonetk"), err)
+        self.assertTrue(1 <= len(err.splitlines()) <= lines, f"bonetk {arguments}: {err}")
+        self.assertTrue(err.splitlines()[-1].startswith("bonetk"), err)
         self.assertNotIn("0x", err)
         self.assertNotIn(".cxx", err)
         self.assertNotIn(".hxx", err)

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """The commands one after the other on a small phantom, the example programs, and what `info` and `validate` say."""
-import json
 import os
 
 import numpy
 import nibabel
 
-from bonetk_testing import EXAMPLES, TestCase, bonetk, main, run
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
 
 GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detectorU": [1, 0, 0],
             "detectorV": [0, 0, -1], "size": [64, 80], "spacing": [4, 4]}
@@ -34,18 +33,18 @@ class Commands(TestCase):
         for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "d.vtu", "d1.vtu", "h_L2.vtu", "h_L3.vtu"):
             out, _ = self.succeed("validate", mesh)
             self.assertNotIn("FAILED", out, mesh)
-        levels = json.load(open("h.hierarchy.json"))["levels"]
+        levels = read_json("h.hierarchy.json")["levels"]
         self.assertLess(levels[1]["tetrahedra"], levels[0]["tetrahedra"])
         self.assertEqual(len(levels[2]["parentPoint"]), levels[2]["points"])
 
-        json.dump(GEOMETRY, open("g.json", "w"))
+        write_json(GEOMETRY, "g.json")
         self.succeed("drr", "d.vtu", "--geometry", "g.json", "-o", "model.nii.gz")
         self.succeed("drr", "ct.nii.gz", "--mask", "l.nii.gz", "--geometry", "g.json", "-o", "ct_drr.nii.gz")
         model = numpy.asarray(nibabel.load("model.nii.gz").dataobj)
         voxels = numpy.asarray(nibabel.load("ct_drr.nii.gz").dataobj)
         self.assertEqual(model.shape[:2], (64, 80))
         self.assertLess(numpy.abs(model - voxels).mean(), 0.05 * voxels.max())
-        json.dump([GEOMETRY, GEOMETRY], open("two.json", "w"))
+        write_json([GEOMETRY, GEOMETRY], "two.json")
         self.succeed("drr", "d.vtu", "--geometry", "two.json", "-o", "views.mha")
         self.assertTrue(os.path.exists("views_V1.mha") and os.path.exists("views_V2.mha"))
 
@@ -67,7 +66,7 @@ class Commands(TestCase):
         angle = numpy.linspace(0, 2 * numpy.pi, 24, endpoint=False)
         points = [{"position": [17 * numpy.cos(a), 3 + 17 * numpy.sin(a), -100.5]} for a in angle]
         markup = {"markups": [{"type": "ClosedCurve", "coordinateSystem": "LPS", "controlPoints": points}]}
-        json.dump(markup, open("init.mrk.json", "w"))
+        write_json(markup, "init.mrk.json")
         out, _ = self.succeed("info", "init.mrk.json")
         self.assertIn("contours", out)
         self.succeed("contours", "ct.nii.gz", "--init", "init.mrk.json", "--slice-step", 6, "-o", "c.vtp")

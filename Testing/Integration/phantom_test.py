@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """The whole job on the femur phantom, as Examples/run.sh does it: counts, validity and how well the model fits."""
-import json
-
-from bonetk_testing import TestCase, main
+from bonetk_testing import TestCase, main, read_json
 
 
 class Phantom(TestCase):
@@ -10,7 +8,7 @@ class Phantom(TestCase):
         self.succeed("phantom", "--bone", "femur", "--spacing", 0.8, "--noise", 20, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
         _, err = self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "-o", "out")
         self.assertIn("warning", err)  # the shaft leaves the image
-        first, second, third = json.load(open("out/report.json"))["levels"]
+        first, second, third = read_json("out/report.json")["levels"]
         self.assertTrue(25000 <= first["tetrahedra"] <= 40000, first["tetrahedra"])
         self.assertAlmostEqual(second["tetrahedra"] / first["tetrahedra"], 1 / 5, delta=0.03)
         self.assertAlmostEqual(third["tetrahedra"] / first["tetrahedra"], 1 / 13, delta=0.015)
