@@ -14,8 +14,8 @@ namespace bone
  * \brief Least-squares fit of a Bernstein polynomial to values at a fixed pattern of points of a tetrahedron (paper 3).
  *
  * The pattern is a lattice in barycentric coordinates: ((i, j, k, l) + s) / (m + 4 s) for all i+j+k+l = m, that is
- * BernsteinCount(m) points, evenly spread and all strictly inside; s is 1/2 up to degree 2, where each point then
- * stands for the same share of the volume, and 1/4 above, as polynomials of high degree swing beyond the outermost
+ * BernsteinCount(m) points, evenly spread and all strictly inside; s is 1/2 up to degree 3, where each point then
+ * stands for the same share of the volume, and 1/3 above, as polynomials of high degree swing beyond the outermost
  * points. As the pattern is the same in every tetrahedron, so is the matrix of the least-squares problem: its
  * pseudo-inverse is computed once, here, by a QR factorisation, and a fit is a matrix product. A polynomial of the
  * kernel's degree or lower is reproduced to rounding, and the fit does not depend on the order of the vertices.
@@ -23,8 +23,8 @@ namespace bone
  * `tikhonov` > 0 holds control values near the data where the values say little about them, as in tetrahedra of few
  * voxels: the fit then minimises the mean of (p(mu) - value)^2 over the points plus `tikhonov` times the mean of
  * (c - low)^2 over the coefficients, `low` being the same kind of fit of the degree below, elevated. Degree 1 is the
- * plain fit, so that linear fields stay exact. On CT, 1e-4 cuts the overshoot of control values at degree 8 to a tenth
- * and costs nothing at degree 5 or below.
+ * plain fit, so that linear fields stay exact. On CT, 1e-4 cuts the overshoot of control values at degree 8 to a fifth
+ * and costs next to nothing at degree 5 or below.
  *
  * Const use is safe from many threads. */
 class DensityFitKernel

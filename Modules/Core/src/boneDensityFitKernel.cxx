@@ -34,7 +34,7 @@ LatticeExponents(int lattice)
 std::vector<Barycentric>
 LatticePoints(int degree, int lattice)
 {
-  const double             inset = degree <= 2 ? 0.5 : 0.25;
+  const double             inset = degree <= 3 ? 1.0 / 2 : 1.0 / 3;
   std::vector<Barycentric> points;
   for (const auto & [i, j, k, l] : LatticeExponents(lattice))
   {
