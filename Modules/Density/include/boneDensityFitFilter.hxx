@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace bone
@@ -139,11 +140,7 @@ DensityFitFilter<TImage, TMesh>::FitBatches(const DensityFitPlan & plan, MeshArr
   this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
   this->GetMultiThreader()->ParallelizeArray(0, batches.size(), fitBatch, this);
 
-  std::size_t total = 0;
-  for (std::size_t samples : outside)
-  {
-    total += samples;
-  }
+  const std::size_t total = std::accumulate(outside.begin(), outside.end(), std::size_t{ 0 });
   m_OutsideFraction = static_cast<double>(total) / static_cast<double>(plan.GetNumberOfSamples());
   if (m_OutsideFraction >= 1)
   {

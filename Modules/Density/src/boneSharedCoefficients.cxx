@@ -100,6 +100,24 @@ SimplicesOf(const MeshArrays & mesh)
   simplices.erase(std::unique(simplices.begin(), simplices.end()), simplices.end());
   return simplices;
 }
+
+/** Fills start and uses from global. */
+void
+ListUses(SharedCoefficients & shared)
+{
+  shared.start.assign(shared.size + 1, 0);
+  for (std::uint32_t place : shared.global)
+  {
+    ++shared.start[place + 1];
+  }
+  std::partial_sum(shared.start.begin(), shared.start.end(), shared.start.begin());
+  shared.uses.resize(shared.global.size());
+  std::vector<std::uint32_t> next(shared.start.begin(), shared.start.end() - 1);
+  for (std::size_t use = 0; use < shared.global.size(); ++use)
+  {
+    shared.uses[next[shared.global[use]]++] = static_cast<std::uint32_t>(use);
+  }
+}
 } // namespace
 
 SharedCoefficients
@@ -154,18 +172,7 @@ ShareCoefficients(const MeshArrays & mesh)
       shared.global[t * count + c] = static_cast<std::uint32_t>(place);
     }
   }
-  shared.start.assign(shared.size + 1, 0);
-  for (std::uint32_t place : shared.global)
-  {
-    ++shared.start[place + 1];
-  }
-  std::partial_sum(shared.start.begin(), shared.start.end(), shared.start.begin());
-  shared.uses.resize(shared.global.size());
-  std::vector<std::uint32_t> next(shared.start.begin(), shared.start.end() - 1);
-  for (std::size_t use = 0; use < shared.global.size(); ++use)
-  {
-    shared.uses[next[shared.global[use]]++] = static_cast<std::uint32_t>(use);
-  }
+  ListUses(shared);
   return shared;
 }
 } // namespace bone
