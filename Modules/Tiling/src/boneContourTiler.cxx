@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -45,6 +46,45 @@ public:
 private:
   std::vector<PieceId> m_Pieces;
 };
+
+/** Slices with a point at which the interface round a region is no 2-manifold: its faces there form several sheets, or
+ * more than two of them share an edge. */
+std::set<int>
+PinchedInterfaceSlices(const MeshArrays & mesh)
+{
+  std::set<int> slices;
+  const int     deepest = *std::max_element(mesh.region.begin(), mesh.region.end());
+  for (int region = 2; region <= deepest; ++region)
+  {
+    // The faces at a point, as directed edges opposite to it; a single sheet is a single closed chain of them.
+    std::map<IdType, std::map<IdType, IdType>> links;
+    std::map<IdType, std::size_t>              faces;
+    for (const auto & face : BoundaryFaces(mesh, region))
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        links[face[k]][face[(k + 1) % 3]] = face[(k + 2) % 3];
+        ++faces[face[k]];
+      }
+    }
+    for (const auto & [point, next] : links)
+    {
+      std::size_t length = 1;
+      const auto  start = next.begin()->first;
+      auto        here = next.find(next.begin()->second);
+      while (here != next.end() && here->first != start && length <= faces[point])
+      {
+        ++length;
+        here = next.find(here->second);
+      }
+      if (here == next.end() || length != faces[point])
+      {
+        slices.insert(mesh.slice[point]);
+      }
+    }
+  }
+  return slices;
+}
 
 /** Tiles all slabs of a stack in order. Pieces named in `plain` do without their inner layers. */
 class StackTiler
@@ -468,7 +508,18 @@ private:
     const MeshValidation validation = ValidateMesh(mesh);
     if (!validation.IsValid())
     {
-      throw std::runtime_error("the contours cannot be tiled into a valid mesh: " + validation.Summary());
+      std::vector<PieceId> layered;
+      for (const int k : PinchedInterfaceSlices(mesh))
+      {
+        for (std::size_t i = 0; i < m_Pieces[k].size(); ++i)
+        {
+          if (m_Pieces[k][i].loops.size() > 1)
+          {
+            layered.emplace_back(k, static_cast<int>(i));
+          }
+        }
+      }
+      throw SlabFailure("the contours cannot be tiled into a valid mesh: " + validation.Summary(), layered);
     }
     Progress(1.0);
     return mesh;

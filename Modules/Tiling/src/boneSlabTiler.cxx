@@ -20,9 +20,10 @@ namespace tiling
 {
 namespace
 {
-constexpr int KnitBudget = 60;  // ring knits tried before another way is taken
-constexpr int MaximumDepth = 3; // halvings of a slab by planes in between
-constexpr int PlaneBudget = 14; // planes in between tried for one slab
+constexpr int KnitBudget = 60;         // ring knits tried before another way is taken
+constexpr int MaximumDepth = 3;        // halvings of a slab by planes in between
+constexpr int LayeredPlaneBudget = 14; // planes in between tried for one slab; without layers there is no other way
+constexpr int PlainPlaneBudget = 60;
 
 std::vector<std::vector<Vector2>>
 OuterPolygons(const std::vector<Vector2> & plane, const std::vector<Section> & sections)
@@ -132,7 +133,7 @@ SlabTiler::TileGroup(const std::vector<Section> & lower,
 {
   if (depth == 0)
   {
-    m_Budget = PlaneBudget;
+    m_Budget = RegionsOf(lower).size() + RegionsOf(upper).size() > 2 ? LayeredPlaneBudget : PlainPlaneBudget;
   }
   if (TryDirect(lower, upper))
   {
