@@ -15,8 +15,7 @@ run() {
   local preset=$1 log bad all
   shift
   log=build/$preset/Testing/ctest.log
-  cmake --preset "$preset" > "build-$preset.log" 2>&1 || { cat "build-$preset.log"; rm -f "build-$preset.log"; exit 1; }
-  rm -f "build-$preset.log"
+  cmake --preset "$preset" > /dev/null || exit 1
   cmake --build --preset "$preset" || exit 1
   mkdir -p "$(dirname "$log")"
   ctest --preset "$preset" "$@" | tee "$log"

@@ -5,6 +5,22 @@
 
 namespace bone
 {
+std::vector<std::string>
+DescribeLosses(const TilingReport & report)
+{
+  std::vector<std::string> lines;
+  const auto               count = [&lines](int number, const std::string & what) {
+    if (number > 0)
+    {
+      lines.push_back("The tiling left out " + std::to_string(number) + ' ' + what + '.');
+    }
+  };
+  count(report.loopsLeftOut, "inner contours, so that a layer is thicker there");
+  count(report.holesLeftOut, "holes, which are filled");
+  count(report.piecesLeftOut, "small pieces of bone on a single slice");
+  return lines;
+}
+
 BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
 {
   m_Resample->SetInput(m_Snake->GetOutput());
@@ -79,5 +95,16 @@ BuildPipeline::Update()
   {
     radiograph->Update();
   }
+}
+
+std::vector<std::string>
+BuildPipeline::GetWarnings() const
+{
+  std::vector<std::string> warnings = m_Snake->GetWarnings();
+  for (const auto & more : { m_Resample->GetWarnings(), DescribeLosses(m_Tiling->GetReport()) })
+  {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
+  return warnings;
 }
 } // namespace bone

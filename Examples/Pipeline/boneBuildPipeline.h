@@ -22,6 +22,10 @@
 
 namespace bone
 {
+/** What the tiling left out, in words; empty where it is all of the contours. */
+std::vector<std::string>
+DescribeLosses(const TilingReport & report);
+
 /** \class BuildPipeline
  * \brief The whole job as one lazy ITK pipeline: from a CT to radiographs of each level of its density model.
  *
@@ -120,6 +124,10 @@ public:
   /** Brings everything up to date. */
   void
   Update();
+
+  /** What a person should know of the contours and the tiling, after an update of the tiling. */
+  std::vector<std::string>
+  GetWarnings() const;
 
 private:
   SnakeType::Pointer                         m_Snake{ SnakeType::New() };

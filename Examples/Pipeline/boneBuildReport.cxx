@@ -77,6 +77,25 @@ ToJson(const SurfaceDistance & distance)
 }
 
 nlohmann::ordered_json
+ToJson(const TilingReport & tiling)
+{
+  return { { "slabs", tiling.slabs },
+           { "branchings", tiling.branchings },
+           { "layerBranchings", tiling.layerBranchings },
+           { "caps", tiling.caps },
+           { "flatCuts", tiling.flatCuts },
+           { "edgesRefined", tiling.edgesRefined },
+           { "innerContoursLeftOut", tiling.loopsLeftOut },
+           { "holesLeftOut", tiling.holesLeftOut },
+           { "piecesLeftOut", tiling.piecesLeftOut },
+           { "axesRecomputed", tiling.axesRecomputed },
+           { "otherAxes", tiling.otherAxes },
+           { "alternativeKnits", tiling.alternativeKnits },
+           { "intermediateSlices", tiling.intermediateSlices },
+           { "starFillings", tiling.starFillings } };
+}
+
+nlohmann::ordered_json
 ToJson(const LevelReport & level)
 {
   nlohmann::ordered_json json = { { "points", level.points },
@@ -191,6 +210,7 @@ ToJson(const BuildReport & report)
                          { "degree", report.degree },
                          { "continuous", report.continuous } };
   json["slices"] = report.slices;
+  json["tiling"] = ToJson(report.tiling);
   json["levels"] = nlohmann::ordered_json::array();
   for (const LevelReport & level : report.levels)
   {

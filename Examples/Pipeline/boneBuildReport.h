@@ -50,6 +50,7 @@ struct BuildReport
   IdType                   askedTetrahedra{ 0 };
   Resolution               resolution;
   std::size_t              slices{ 0 };
+  TilingReport             tiling;
   std::vector<LevelReport> levels;
   std::vector<std::string> warnings;
   /** Seconds by step, in order. */

@@ -142,7 +142,7 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
       session.Print(line.str());
     });
   }
-  for (const std::string & warning : pipeline.GetSnake()->GetWarnings())
+  for (const std::string & warning : pipeline.GetWarnings())
   {
     session.Warn(warning);
   }
@@ -218,6 +218,7 @@ Run(const Options & options, Session & session)
   report.continuous = options.continuous;
   report.askedTetrahedra = options.tetrahedra;
   report.slices = pipeline.GetSnake()->GetOutput()->GetSlices().size();
+  report.tiling = pipeline.GetTiling()->GetReport();
   report.levels = evaluation.levels;
   report.warnings = session.GetWarnings();
   WriteOutputs(evaluation, report, pipeline, staging);

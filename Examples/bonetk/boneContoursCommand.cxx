@@ -9,6 +9,8 @@
 #include "boneMedialAxisFilter.h"
 #include "boneSnakeContourFilter.h"
 
+#include <algorithm>
+
 namespace bone
 {
 namespace
@@ -48,9 +50,9 @@ Run(const Options & options, Session & session)
   session.Watch(resample, "resampling");
   session.Watch(axes, "medial axes");
   axes->Update();
-  for (const std::string & warning : snake->GetWarnings())
+  for (const auto & warnings : { snake->GetWarnings(), resample->GetWarnings() })
   {
-    session.Warn(warning);
+    std::for_each(warnings.begin(), warnings.end(), [&session](const std::string & line) { session.Warn(line); });
   }
   WriteContours(axes->GetOutput(), options.output);
 }

@@ -4,8 +4,8 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 
+#include "boneBuildPipeline.h"
 #include "boneContourIO.h"
-#include "boneContourTilingMeshSource.h"
 #include "boneMeshIO.h"
 
 namespace bone
@@ -41,6 +41,10 @@ Run(const Options & options, Session & session)
   }
   session.Watch(tiling, "tiling");
   tiling->Update();
+  for (const std::string & warning : DescribeLosses(tiling->GetReport()))
+  {
+    session.Warn(warning);
+  }
   WriteDensityMesh(tiling->GetOutput(), options.output);
 }
 } // namespace
