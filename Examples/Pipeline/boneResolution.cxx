@@ -46,6 +46,24 @@ NextResolution(const Resolution & last, double ratio, const ResolutionSearch & s
   next.contourSpacing = last.contourSpacing * std::clamp(remaining, 0.4, 2.5);
   return next;
 }
+
+/** A resolution of about as many tetrahedra as one that could not be tiled: other slices, or other samples on them. */
+Resolution
+OtherResolution(const Resolution & last, int trial, const ResolutionSearch & search)
+{
+  constexpr double change = 0.92;
+  Resolution       next = last;
+  const double     step = change * last.sliceStep;
+  if (trial % 2 == 0 && !search.sliceStepFixed && step >= search.sliceSpacing)
+  {
+    next.sliceStep = step;
+  }
+  else
+  {
+    next.contourSpacing *= change;
+  }
+  return next;
+}
 } // namespace
 
 Resolution
@@ -76,7 +94,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
     catch (const itk::ExceptionObject &)
     {
       failure = std::current_exception();
-      resolution.contourSpacing *= 0.94;
+      resolution = OtherResolution(resolution, trial, search);
       continue;
     }
     const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
