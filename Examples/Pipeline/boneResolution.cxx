@@ -10,6 +10,24 @@
 
 namespace bone
 {
+double
+EstimateSurface(const ContourStack & stack)
+{
+  double length = 0.0;
+  for (const ContourSlice & slice : stack.GetSlices())
+  {
+    for (const Contour & contour : slice.contours)
+    {
+      for (std::size_t i = 0; i < contour.points.size() && contour.layer == 0 && !contour.axis; ++i)
+      {
+        length += (contour.points[(i + 1) % contour.points.size()] - contour.points[i]).norm();
+      }
+    }
+  }
+  const std::size_t slices = stack.GetSlices().size();
+  return slices < 2 ? 0.0 : length / static_cast<double>(slices) * (stack.GetHeight(slices - 1) - stack.GetHeight(0));
+}
+
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra)
 {

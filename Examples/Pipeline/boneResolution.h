@@ -17,6 +17,10 @@ struct Resolution
   double contourSpacing{ 0.0 }; ///< mm
 };
 
+/** Area (mm^2) of a bone's surface from its contours: their mean length on a slice times the height of the stack. */
+double
+EstimateSurface(const ContourStack & stack);
+
 /** First guess for a number of tetrahedra. A tiled mesh has about 5.3 tetrahedra a contour point, and the inner layers
  * have about 0.8 times as many points as the outer one: with slices `s` and samples `h` apart, N = 9.5 A / (s h) for a
  * surface of area A, and s = 0.6 h keeps the cells well shaped. A step below the slices' own spacing becomes that

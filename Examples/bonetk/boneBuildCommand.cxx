@@ -43,29 +43,8 @@ struct Input
   LabelImage::Pointer   labels; ///< null without a label map
   LabelImage::Pointer   mask;   ///< null without a label map
   ContourStack::Pointer contours;
-  double                surface{ 0.0 }; ///< of the bone, mm^2
+  double                surface{ 0.0 }; ///< of the label, mm^2; 0 without a label map
 };
-
-/** A contour's length times the distance of slices, over the slices; where there is but one, as if the bone were as
- * long as the contour. */
-double
-EstimateSurface(const ContourStack & stack)
-{
-  double length = 0.0;
-  for (const ContourSlice & slice : stack.GetSlices())
-  {
-    for (const Contour & contour : slice.contours)
-    {
-      for (std::size_t i = 0; i < contour.points.size() && contour.layer == 0 && !contour.axis; ++i)
-      {
-        length += (contour.points[(i + 1) % contour.points.size()] - contour.points[i]).norm();
-      }
-    }
-  }
-  const auto   slices = stack.GetSlices().size();
-  const double mean = length / static_cast<double>(slices);
-  return slices > 1 ? mean * (stack.GetHeight(slices - 1) - stack.GetHeight(0)) : mean * mean;
-}
 
 Input
 ReadInput(const Options & options)
@@ -77,7 +56,6 @@ ReadInput(const Options & options)
   input.contours = bone.contours;
   if (bone.labels.IsNull())
   {
-    input.surface = EstimateSurface(*input.contours);
     return input;
   }
   VerifySameGrid(input.ct, bone.labels);
@@ -111,18 +89,26 @@ CountsOfLevels(const std::vector<double> & levels, IdType finest)
 Resolution
 FindResolution(const Options & options, const Input & input, BuildPipeline & pipeline, Session & session)
 {
-  const double sliceSpacing = input.ct->GetSpacing()[static_cast<unsigned int>(options.axis)];
-  Resolution   resolution = EstimateResolution(input.surface, sliceSpacing, options.tetrahedra);
-  if (options.sliceStep > 0.0)
-  {
-    resolution.contourSpacing *= resolution.sliceStep / options.sliceStep;
-    resolution.sliceStep = options.sliceStep;
-  }
   pipeline.SetImage(input.ct);
   pipeline.SetLabelImage(input.labels);
   pipeline.SetInitialContours(input.contours);
   pipeline.GetSnake()->SetLabel(options.bone.label);
   pipeline.GetSnake()->SetAxis(static_cast<unsigned int>(options.axis));
+  double surface = input.surface;
+  if (input.labels.IsNull())
+  {
+    // How large the bone is shows once its contours were followed.
+    pipeline.GetSnake()->SetSliceStep(5.0);
+    pipeline.GetSnake()->Update();
+    surface = EstimateSurface(*pipeline.GetSnake()->GetOutput());
+  }
+  const double sliceSpacing = input.ct->GetSpacing()[static_cast<unsigned int>(options.axis)];
+  Resolution   resolution = EstimateResolution(surface, sliceSpacing, options.tetrahedra);
+  if (options.sliceStep > 0.0)
+  {
+    resolution.contourSpacing *= resolution.sliceStep / options.sliceStep;
+    resolution.sliceStep = options.sliceStep;
+  }
   pipeline.GetFit()->SetDegree(options.degree);
   pipeline.GetFit()->SetContinuous(options.continuous);
   if (options.contourSpacing > 0.0)
