@@ -14,6 +14,7 @@ namespace
 {
 constexpr int Gap = 8;
 constexpr int Caption = 24;
+constexpr int CaptionWidth = 228; // of 19 characters
 
 Color
 ContourColor(const Contour & contour)
@@ -99,7 +100,7 @@ DrawComparison(const Panel &                   reference,
                const Window &                  window,
                double                          scale)
 {
-  const int width = reference.columns + Gap;
+  const int width = std::max(reference.columns, CaptionWidth) + Gap;
   const int height = reference.rows + Caption + Gap;
   Canvas    canvas(3 * width + Gap, static_cast<int>(levels.size()) * height + Gap);
   for (std::size_t i = 0; i < levels.size(); ++i)
