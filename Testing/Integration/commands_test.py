@@ -69,7 +69,7 @@ class Commands(TestCase):
         write_json(markup, "init.mrk.json")
         out, _ = self.succeed("info", "init.mrk.json")
         self.assertIn("contours", out)
-        self.succeed("contours", "ct.nii.gz", "--init", "init.mrk.json", "--slice-step", 2, "-o", "c.vtp")
+        self.succeed("contours", "ct.nii.gz", "--init", "init.mrk.json", "--slice-step", 6, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
 
     def test_quiet(self):

@@ -19,6 +19,7 @@ struct ExtractionParameters
   double          minimumArea{ 4.0 };     ///< of a contour
   double          boneThreshold{ 150.0 }; ///< what never reaches it is no bone
   double          refineDistance{ 0.0 };  ///< bound on the refinement of a label's outline
+  double          followStep{ 1.0 };      ///< slices further apart are followed on planes between them too
   double          minimumVolume{ 60.0 };  ///< of a body apart from the rest
 };
 
@@ -81,11 +82,10 @@ RefineSections(std::vector<BoneSection> &   sections,
 
 /** \brief Follows contours from slice to slice (paper 2.1).
  *
- * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn, and are settled on
- * the CT first. From each, snakes go on to the slices above and below until they vanish or meet the next drawn slice,
- * each started from the contours of the slice before. A contour ends where fewer than half of its points find an edge,
- * or what it holds never reaches the bone threshold. Contours that cross are joined and parted by their union's
- * outline.
+ * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn. \ref BoneFollower
+ * finds which part of the other slices is that bone; snakes then draw its outlines to the edges: gradient vector flow
+ * first where a person has drawn, within two pixels elsewhere. Contours that would cross are joined and parted by their
+ * union's outline. The report tells where pieces join, touch other bones or end, and of sudden changes and gaps.
  */
 void
 PropagateSections(std::vector<BoneSection> &   sections,

@@ -265,6 +265,7 @@ SnakeContourFilter<TInputImage, TContourStack>::MakeParameters(const Frame & fra
   parameters.minimumSlope = m_MinimumEdgeSlope;
   parameters.minimumArea = m_MinimumContourArea;
   parameters.boneThreshold = m_BoneThreshold;
+  parameters.followStep = frame.slices.step;
   parameters.refineDistance = m_RefineDistance > 0.0 ? m_RefineDistance : pixel;
   parameters.layers.numberOfLayers = m_NumberOfLayers;
   parameters.layers.minimumDistance = m_MinimumLayerDistance > 0.0 ? m_MinimumLayerDistance : std::max(0.8, pixel);

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneContourExtraction.h"
 
+#include "boneBoneFollower.h"
 #include "bonePlanarCrossing.h"
 
 #include <algorithm>
@@ -89,118 +90,48 @@ UnionOutline(const std::vector<Polygon> & loops, double pixel)
   return ExtractLevelContours(field, 0.0);
 }
 
-class Propagation
+// Snakes on a slice of followed bone.
+class SliceSnakes
 {
 public:
-  Propagation(const PlaneSource & planes, const Vector2 & pixel, const ExtractionParameters & parameters)
+  SliceSnakes(const PlaneSource & planes, const Vector2 & pixel, const ExtractionParameters & parameters)
     : m_Planes(planes)
     , m_Pixel(pixel)
     , m_Parameters(parameters)
   {}
 
-  // The pieces on a slice, started from those of another; empty where all have ended.
-  std::vector<BonePiece>
-  Step(const BoneSection & from, double height, SliceReport & report) const
+  // Draws the outlines of the pieces to the bone's edges; keeps them where that makes them cross.
+  void
+  Settle(BoneSection & section, bool drawn, SliceReport & report) const
   {
-    const double               pixel = m_Pixel.maxCoeff();
-    const std::vector<Polygon> start = LoopsOf(from);
-    const PlaneField           plane = PlaneAround(start, height, 12.0 * pixel, m_Planes);
-    const BoneEdges            edges(plane, start, Smoothing(m_Parameters, m_Pixel), m_Parameters.minimumSlope);
-    std::vector<Polygon>       loops;
-    report.height = height;
+    if (section.pieces.empty())
+    {
+      return;
+    }
+    const std::vector<Polygon> start = LoopsOf(section);
+    const PlaneField           plane = PlaneAround(start, section.height, 12.0 * m_Pixel.maxCoeff(), m_Planes);
+    const BoneEdges            edges(
+      plane, drawn ? start : std::vector<Polygon>{}, Smoothing(m_Parameters, m_Pixel), m_Parameters.minimumSlope);
+    std::vector<Polygon> loops;
     for (const Polygon & loop : start)
     {
-      const bool        hole = SignedArea(loop) < 0.0;
-      const SnakeResult snake = hole ? EvolveSnake(Reversed(loop), Outwards(plane, start), m_Parameters.snake)
-                                     : EvolveSnake(loop, edges, m_Parameters.snake);
+      // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does.
+      SnakeResult snake = drawn ? EvolveSnake(loop, edges, m_Parameters.snake)
+                                : RefineSnake(loop, edges, 2.0 * m_Pixel.maxCoeff(), m_Parameters.snake);
+      const bool  turned = SignedArea(snake.contour) * SignedArea(loop) <= 0.0;
       AddResult(snake, report);
-      if (snake.contour.empty() || SignedArea(snake.contour) < m_Parameters.minimumArea || snake.support < 0.5 ||
-          (!hole && this->Brightest(plane, snake.contour) < m_Parameters.boneThreshold))
-      {
-        AddEvent(report, hole ? "a hole ends" : "a contour ends");
-        continue;
-      }
-      loops.push_back(hole ? Reversed(snake.contour) : snake.contour);
+      loops.push_back(snake.contour.empty() || turned ? loop : std::move(snake.contour));
     }
-    if (!loops.empty() && AnyCrossing(loops))
+    if (AnyCrossing(loops))
     {
-      loops = UnionOutline(loops, pixel);
+      loops = UnionOutline(loops, m_Pixel.maxCoeff());
       AddEvent(report, "contours met and were joined or parted");
     }
-    int                    dropped = 0;
-    std::vector<BonePiece> pieces = GroupPieces(std::move(loops), m_Parameters.minimumArea, dropped);
-    this->NoteChange(from.pieces, pieces, report);
-    return pieces;
+    int dropped = 0;
+    section.pieces = GroupPieces(std::move(loops), m_Parameters.minimumArea, dropped);
   }
 
 private:
-  static Polygon
-  Reversed(Polygon polygon)
-  {
-    std::reverse(polygon.begin(), polygon.end());
-    return polygon;
-  }
-
-  // Edges of a hole: bright outside. The image's negative turns them into a bone's.
-  BoneEdges
-  Outwards(PlaneField plane, const std::vector<Polygon> & start) const
-  {
-    std::vector<Polygon> holes;
-    for (const Polygon & loop : start)
-    {
-      if (SignedArea(loop) < 0.0)
-      {
-        holes.push_back(loop);
-      }
-    }
-    for (float & value : plane.values)
-    {
-      value = -value;
-    }
-    return BoneEdges(plane, holes, Smoothing(m_Parameters, m_Pixel), m_Parameters.minimumSlope);
-  }
-
-  // The highest value just inside a contour.
-  double
-  Brightest(const PlaneField & plane, const Polygon & contour) const
-  {
-    double            brightest = -1e30;
-    const std::size_t n = contour.size();
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const Vector2 tangent = (contour[(i + 1) % n] - contour[(i + n - 1) % n]).normalized();
-      const Vector2 inside = contour[i] + m_Pixel.maxCoeff() * Vector2(-tangent.y(), tangent.x());
-      brightest = std::max(brightest, plane.Sample(inside));
-    }
-    return brightest;
-  }
-
-  void
-  NoteChange(const std::vector<BonePiece> & before, const std::vector<BonePiece> & after, SliceReport & report) const
-  {
-    const auto area = [](const std::vector<BonePiece> & pieces) {
-      double sum = 0.0;
-      for (const BonePiece & piece : pieces)
-      {
-        sum += SignedArea(piece.outer);
-      }
-      return sum;
-    };
-    const double ratio = area(after) / std::max(area(before), 1e-9);
-    if (ratio > 1.5 || (ratio < 0.6 && !after.empty()))
-    {
-      std::ostringstream text;
-      text << "area changes suddenly, by a factor of " << ratio;
-      AddEvent(report, text.str());
-    }
-    if (!after.empty() && before.size() != after.size())
-    {
-      std::ostringstream text;
-      text << before.size() << " pieces become " << after.size();
-      AddEvent(report, text.str());
-    }
-  }
-
   const PlaneSource &          m_Planes;
   Vector2                      m_Pixel;
   const ExtractionParameters & m_Parameters;
@@ -315,40 +246,22 @@ PropagateSections(std::vector<BoneSection> &   sections,
                   const ParallelFor &          parallel,
                   ExtractionReport &           report)
 {
-  const Propagation        propagation(planes, pixel, parameters);
-  std::vector<std::size_t> drawn;
-  report.slices.resize(sections.size());
-  for (std::size_t k = 0; k < sections.size(); ++k)
+  FollowParameters following;
+  following.threshold = parameters.boneThreshold;
+  following.minimumArea = parameters.minimumArea;
+  std::vector<char> drawn;
+  for (const BoneSection & section : sections)
   {
-    report.slices[k].height = sections[k].height;
-    if (!sections[k].pieces.empty())
-    {
-      drawn.push_back(k);
-    }
+    drawn.push_back(!section.pieces.empty());
   }
-  parallel(drawn.size(), [&](std::size_t d) {
-    BoneSection & section = sections[drawn[d]];
-    section.pieces = propagation.Step(section, section.height, report.slices[drawn[d]]);
-  });
-  // Each run goes from a drawn slice in one direction; it takes half the way to the next drawn one.
-  parallel(2 * drawn.size(), [&](std::size_t run) {
-    const std::size_t d = run / 2;
-    const bool        up = run % 2 == 1;
-    std::size_t       last = up ? sections.size() - 1 : 0;
-    if (up && d + 1 < drawn.size())
-    {
-      last = (drawn[d] + drawn[d + 1]) / 2;
-    }
-    if (!up && d > 0)
-    {
-      last = (drawn[d - 1] + drawn[d]) / 2 + 1;
-    }
-    for (std::size_t k = drawn[d]; k != last && !sections[k].pieces.empty();)
-    {
-      const std::size_t next = up ? k + 1 : k - 1;
-      sections[next].pieces = propagation.Step(sections[k], sections[next].height, report.slices[next]);
-      k = next;
-    }
+  const BoneFollower             follower(planes, pixel, following);
+  const std::vector<std::string> events = follower.Follow(sections, parameters.followStep);
+  const SliceSnakes              snakes(planes, pixel, parameters);
+  report.slices.resize(sections.size());
+  parallel(sections.size(), [&](std::size_t k) {
+    report.slices[k].height = sections[k].height;
+    report.slices[k].events = events[k];
+    snakes.Settle(sections[k], drawn[k] != 0, report.slices[k]);
   });
 }
 

@@ -144,7 +144,7 @@ FollowFlow(Polygon & contour, const BoneEdges & edges, const SnakeParameters & p
     const double motion = MeanMotion(contour, moved);
     contour = ResampleUniform(moved, pixel);
     ++result.iterations;
-    if (!(SignedArea(contour) > 9.0 * pixel * pixel))
+    if (!(std::abs(SignedArea(contour)) > 9.0 * pixel * pixel))
     {
       return false;
     }
