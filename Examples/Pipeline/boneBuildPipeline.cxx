@@ -17,7 +17,6 @@ DescribeLosses(const TilingReport & report)
   };
   count(report.loopsLeftOut, "inner contours, so that a layer is thicker there");
   count(report.holesLeftOut, "holes, which are filled");
-  count(report.piecesLeftOut, "small pieces of bone on a single slice");
   return lines;
 }
 

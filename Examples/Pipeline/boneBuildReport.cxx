@@ -87,12 +87,12 @@ ToJson(const TilingReport & tiling)
            { "edgesRefined", tiling.edgesRefined },
            { "innerContoursLeftOut", tiling.loopsLeftOut },
            { "holesLeftOut", tiling.holesLeftOut },
-           { "piecesLeftOut", tiling.piecesLeftOut },
            { "axesRecomputed", tiling.axesRecomputed },
            { "otherAxes", tiling.otherAxes },
            { "alternativeKnits", tiling.alternativeKnits },
-           { "intermediateSlices", tiling.intermediateSlices },
-           { "starFillings", tiling.starFillings } };
+           { "patches", tiling.patches },
+           { "filledSlabs", tiling.filledSlabs },
+           { "filledEnds", tiling.filledEnds } };
 }
 
 nlohmann::ordered_json

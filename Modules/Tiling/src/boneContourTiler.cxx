@@ -6,12 +6,14 @@
 #include "boneMeshValidator.h"
 #include "boneSectionBuilder.h"
 #include "boneSectionJoin.h"
+#include "boneSlabFilling.h"
 #include "boneSlabTiler.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -23,86 +25,66 @@ using namespace tiling;
 
 constexpr double LeastCapHeight = 0.2; // of the slab
 constexpr double MostCapHeight = 0.9;
-constexpr double LargestAreaLeftOut = 40.0; // mm^2
+constexpr double FilledEndFactor = 1.5; // of its height; the outermost copy of the overlay lies at 2/3 or less
 
-/** A piece of a slice: slice and position among its pieces. */
-using PieceId = std::pair<int, int>;
+/** Ids of the holes of each slice that are left out. */
+using ClosedHoles = std::vector<std::set<int>>;
 
-/** No way to fill the space between some pieces of two slices. */
-class SlabFailure : public std::runtime_error
+/** The points of the surfaces that bound voids inside the body: connected boundary components that enclose no volume
+ * of bone but of nothing. */
+std::vector<char>
+PointsAroundVoids(const MeshArrays & mesh)
 {
-public:
-  SlabFailure(const std::string & what, std::vector<PieceId> pieces)
-    : std::runtime_error(what)
-    , m_Pieces(std::move(pieces))
-  {}
-
-  const std::vector<PieceId> &
-  GetPieces() const
-  {
-    return m_Pieces;
-  }
-
-private:
-  std::vector<PieceId> m_Pieces;
-};
-
-/** Slices with a point at which the interface round a region is no 2-manifold: its faces there form several sheets, or
- * more than two of them share an edge. */
-std::set<int>
-PinchedInterfaceSlices(const MeshArrays & mesh)
-{
-  std::set<int> slices;
-  const int     deepest = *std::max_element(mesh.region.begin(), mesh.region.end());
-  for (int region = 2; region <= deepest; ++region)
-  {
-    // The faces at a point, as directed edges opposite to it; a single sheet is a single closed chain of them.
-    std::map<IdType, std::map<IdType, IdType>> links;
-    std::map<IdType, std::size_t>              faces;
-    for (const auto & face : BoundaryFaces(mesh, region))
+  const auto          faces = BoundaryFaces(mesh);
+  std::vector<IdType> root(mesh.points.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&root](IdType p) {
+    while (root[p] != p)
     {
-      for (int k = 0; k < 3; ++k)
-      {
-        links[face[k]][face[(k + 1) % 3]] = face[(k + 2) % 3];
-        ++faces[face[k]];
-      }
+      p = root[p] = root[root[p]];
     }
-    for (const auto & [point, next] : links)
+    return p;
+  };
+  for (const auto & f : faces)
+  {
+    root[find(f[1])] = find(f[0]);
+    root[find(f[2])] = find(f[0]);
+  }
+  std::vector<double> volume(mesh.points.size(), 0.0);
+  const Vector3       origin = mesh.points.empty() ? Vector3(Vector3::Zero()) : mesh.points[0];
+  for (const auto & f : faces)
+  {
+    volume[find(f[0])] += SignedVolume(origin, mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]);
+  }
+  std::vector<char> around(mesh.points.size(), 0);
+  for (const auto & f : faces)
+  {
+    for (IdType p : f)
     {
-      std::size_t length = 1;
-      const auto  start = next.begin()->first;
-      auto        here = next.find(next.begin()->second);
-      while (here != next.end() && here->first != start && length <= faces[point])
-      {
-        ++length;
-        here = next.find(here->second);
-      }
-      if (here == next.end() || length != faces[point])
-      {
-        slices.insert(mesh.slice[point]);
-      }
+      around[p] = volume[find(p)] < 0;
     }
   }
-  return slices;
+  return around;
 }
 
-/** Tiles all slabs of a stack in order. Pieces named in `plain` do without their inner layers. */
+/** Tiles all slabs of a stack in order. The holes in `closed` are left out; those around voids are added to it. */
 class StackTiler
 {
 public:
-  StackTiler(const ContourStack &      stack,
-             const TilingMetric &      metric,
-             const TilingParameters &  parameters,
-             const std::set<PieceId> & plain,
-             TilingReport &            report)
+  StackTiler(const ContourStack &     stack,
+             const TilingMetric &     metric,
+             const TilingParameters & parameters,
+             ClosedHoles &            closed,
+             TilingReport &           report)
     : m_Stack(stack)
     , m_Parameters(parameters)
-    , m_Plain(plain)
+    , m_Closed(closed)
     , m_Report(report)
     , m_Slabs(stack, metric, m_Pool, m_Tetrahedra, report)
   {}
 
-  MeshArrays
+  /** The mesh; or nothing where holes were found that are voids. */
+  std::optional<MeshArrays>
   Run()
   {
     const int slices = static_cast<int>(m_Stack.GetSlices().size());
@@ -120,7 +102,8 @@ public:
       }
       Progress(0.9 * (k + 1) / slices);
     }
-    CloseEnds();
+    CloseOutermost(0, false, m_Stack.GetOpenStart());
+    CloseOutermost(slices - 1, true, m_Stack.GetOpenEnd());
     return Assemble();
   }
 
@@ -138,21 +121,7 @@ private:
   void
   CollectSlice(int k)
   {
-    m_Pieces.push_back(CollectPieces(m_Stack, k, m_Report));
-    for (std::size_t i = 0; i < m_Pieces[k].size(); ++i)
-    {
-      PieceOutline & piece = m_Pieces[k][i];
-      if (m_Plain.count({ k, static_cast<int>(i) }) > 0 && piece.loops.size() > 1)
-      {
-        m_Report.loopsLeftOut += static_cast<int>(piece.loops.size()) - 1;
-        m_Report.notes.push_back("slice " + std::to_string(k) + ", contour " + std::to_string(piece.loops[0].id) +
-                                 ": its inner contours were left out, the slab could not be tiled with them");
-        piece.loops.resize(1);
-        piece.axis.clear();
-      }
-    }
-    m_CappedBelow.emplace_back(m_Pieces[k].size(), 1);
-    m_CappedAbove.emplace_back(m_Pieces[k].size(), 1);
+    m_Pieces.push_back(CollectPieces(m_Stack, k, m_Closed[k], m_Report));
     if (k > 0)
     {
       m_Groups.push_back(MatchPieces(Outlines(k - 1), Outlines(k), m_Stack.GetHeight(k) - m_Stack.GetHeight(k - 1)));
@@ -232,40 +201,41 @@ private:
   {
     const double      low = m_Stack.GetHeight(k), high = m_Stack.GetHeight(k + 1);
     const std::size_t begin = m_Tetrahedra.size();
-    for (Group & group : m_Groups[k])
+    bool              tiled = true;
+    for (const Group & group : m_Groups[k])
     {
-      if (group.lower.empty() || group.upper.empty())
-      {
-        continue;
-      }
       Count(Pick(k, group.lower), Pick(k + 1, group.upper));
-      if (!TryCutOpen(k, group, low, high) && !m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) &&
-          !TryOtherAxes(k, group))
-      {
-        TileOrThin(k, group, low, high);
-      }
-      for (int i : group.lower)
-      {
-        m_CappedAbove[k][i] = 0;
-      }
-      for (int i : group.upper)
-      {
-        m_CappedBelow[k + 1][i] = 0;
-      }
+      tiled = tiled && TileGroup(k, group);
     }
-    if (WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, low, high))
+    if (tiled && !WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, low, high))
     {
-      std::vector<PieceId> layered;
-      for (const Group & group : m_Groups[k])
-      {
-        const auto pieces = LayeredPieces(k, group);
-        layered.insert(layered.end(), pieces.begin(), pieces.end());
-      }
-      throw SlabFailure(
-        "slice " + std::to_string(k) +
-          ": surfaces of neighbouring pieces cross on the way to the next slice; use a smaller slice step",
-        layered);
+      return;
     }
+    m_Tetrahedra.resize(begin);
+    try
+    {
+      FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool, m_Tetrahedra);
+      ++m_Report.filledSlabs;
+    }
+    catch (const std::runtime_error & error)
+    {
+      throw std::runtime_error("slice " + std::to_string(k) + ": the space to the next slice cannot be filled, " +
+                               error.what() + "; use a smaller slice step");
+    }
+  }
+
+  bool
+  TileGroup(int k, const Group & group)
+  {
+    if (group.upper.empty())
+    {
+      return std::all_of(group.lower.begin(), group.lower.end(), [&](int i) { return TryCap(k, i, true); });
+    }
+    if (group.lower.empty())
+    {
+      return std::all_of(group.upper.begin(), group.upper.end(), [&](int i) { return TryCap(k + 1, i, false); });
+    }
+    return m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) || TryOtherAxes(k, group);
   }
 
   void
@@ -274,49 +244,14 @@ private:
     std::vector<Section> both = lower;
     both.insert(both.end(), upper.begin(), upper.end());
     const std::size_t regions = RegionsOf(both).size();
+    if (lower.empty() || upper.empty())
+    {
+      return;
+    }
     ++m_Report.slabs;
     m_Report.branchings += both.size() > 2;
     m_Report.layerBranchings +=
       std::any_of(both.begin(), both.end(), [regions](const Section & s) { return s.region.size() < regions; });
-  }
-
-  /** An open ring against a closed one, below or above, is tiled with that one cut open at the mouth. */
-  bool
-  TryCutOpen(int k, const Group & group, double low, double high)
-  {
-    if (group.lower.size() != 1 || group.upper.size() != 1)
-    {
-      return false;
-    }
-    Section lower = m_Sections[k][group.lower[0]], upper = m_Sections[k + 1][group.upper[0]];
-    if (lower.hole == upper.hole)
-    {
-      return false;
-    }
-    const Section & ring = lower.hole ? lower : upper;
-    const Section & other = lower.hole ? upper : lower;
-    const auto      outline = OuterPolygon(m_Pool.plane, other);
-    // A hole that begins in solid bone is drawn to a point; one before a mouth has little bone across it.
-    int covered = 0;
-    for (int v : ring.walks.back())
-    {
-      covered += PointInPolygon(m_Pool.plane[v], outline);
-    }
-    Section open;
-    if (2 * covered > static_cast<int>(ring.walks.back().size()) || !CutOpen(m_Pool.plane, ring, outline, open))
-    {
-      return false;
-    }
-    (lower.hole ? lower : upper) = open;
-    try
-    {
-      m_Slabs.TileGroup({ lower }, { upper }, low, high);
-    }
-    catch (const std::runtime_error & error)
-    {
-      throw SlabFailure(error.what(), LayeredPieces(k, group));
-    }
-    return true;
   }
 
   /** The slice above has no slab yet: it may take on the axis from below at any cost, or keep to its own. */
@@ -345,46 +280,50 @@ private:
     return false;
   }
 
-  /** Tiles a group by the ways out; where they fail, without its small pieces that no other slice knows. */
+  /** Closes what is on the first or last slice of the stack; flat where the bone leaves the image. */
   void
-  TileOrThin(int k, Group & group, double low, double high)
+  CloseOutermost(int k, bool above, bool open)
   {
-    try
+    for (std::size_t i = 0; i < m_Sections[k].size(); ++i)
     {
-      m_Slabs.TileGroup(Pick(k, group.lower), Pick(k + 1, group.upper), low, high);
-    }
-    catch (const std::runtime_error & error)
-    {
-      if (!LeaveOutSmallest(k, group))
+      if (open && Continues(k, static_cast<int>(i), !above))
       {
-        throw SlabFailure(error.what(), LayeredPieces(k, group));
+        ++m_Report.flatCuts;
+        continue;
       }
-      TileOrThin(k, group, low, high);
+      if (!TryCap(k, static_cast<int>(i), above))
+      {
+        FillEnd(m_Sections[k][i], m_Stack.GetHeight(k), EndHeight(k, static_cast<int>(i), above), above);
+      }
     }
   }
 
-  std::vector<PieceId>
-  LayeredPieces(int k, const Group & group) const
+  bool
+  TryCap(int k, int i, bool above)
   {
-    std::vector<PieceId> pieces;
-    for (int i : group.lower)
-    {
-      if (m_Pieces[k][i].loops.size() > 1)
-      {
-        pieces.emplace_back(k, i);
-      }
-    }
-    for (int i : group.upper)
-    {
-      if (m_Pieces[k + 1][i].loops.size() > 1)
-      {
-        pieces.emplace_back(k + 1, i);
-      }
-    }
-    return pieces;
+    const double height = EndHeight(k, i, above);
+    const bool   done = m_Slabs.TryCap(m_Sections[k][i], m_Stack.GetHeight(k) + (above ? height : -height), above);
+    m_Report.caps += done;
+    return done;
   }
 
-  /** True where piece i of slice k has a counterpart on the slice on its other side. */
+  void
+  FillEnd(const Section & section, double here, double height, bool above)
+  {
+    const std::vector<Section> one{ section }, none;
+    const double               reach = FilledEndFactor * height;
+    if (above)
+    {
+      FillSlab(m_Stack, one, none, { { { 0 }, {} } }, here, here + reach, m_Pool, m_Tetrahedra);
+    }
+    else
+    {
+      FillSlab(m_Stack, none, one, { { {}, { 0 } } }, here - reach, here, m_Pool, m_Tetrahedra);
+    }
+    ++m_Report.filledEnds;
+  }
+
+  /** True where piece i of slice k has a counterpart above or below. */
   bool
   Continues(int k, int i, bool above) const
   {
@@ -400,69 +339,17 @@ private:
     });
   }
 
-  bool
-  LeaveOutSmallest(int k, Group & group)
+  /** How far beyond slice k its piece i ends: of a rounded end the area falls linearly with height. */
+  double
+  EndHeight(int k, int i, bool above) const
   {
-    const bool         below = group.lower.size() > 1;
-    std::vector<int> & leaves = below ? group.lower : group.upper;
-    const int          slice = below ? k : k + 1;
-    if (leaves.size() < 2)
-    {
-      return false;
-    }
-    const auto area = [&](int i) { return OuterArea(slice, i); };
-    const auto smallest =
-      std::min_element(leaves.begin(), leaves.end(), [&](int a, int b) { return area(a) < area(b); });
-    if (Continues(slice, *smallest, !below) || area(*smallest) > LargestAreaLeftOut)
-    {
-      return false;
-    }
-    ++m_Report.piecesLeftOut;
-    m_Report.notes.push_back("slice " + std::to_string(slice) + ": a piece of " + std::to_string(area(*smallest)) +
-                             " mm2 that no other slice knows cannot be joined and was left out");
-    m_CappedBelow[slice][*smallest] = m_CappedAbove[slice][*smallest] = 0;
-    leaves.erase(smallest);
-    return true;
-  }
-
-  /** Closes what has no counterpart on the next slice, up or down; flat where the bone leaves the image. */
-  void
-  CloseEnds()
-  {
-    const int slices = static_cast<int>(m_Sections.size());
-    for (int k = 0; k < slices; ++k)
-    {
-      for (std::size_t i = 0; i < m_Sections[k].size(); ++i)
-      {
-        const bool lone = m_CappedBelow[k][i] && m_CappedAbove[k][i];
-        if (m_CappedBelow[k][i])
-        {
-          Close(k, i, false, k == 0 && m_Stack.GetOpenStart() && !lone);
-        }
-        if (m_CappedAbove[k][i])
-        {
-          Close(k, i, true, k + 1 == slices && m_Stack.GetOpenEnd() && !lone);
-        }
-      }
-    }
-  }
-
-  void
-  Close(int k, std::size_t i, bool above, bool open)
-  {
-    if (open)
-    {
-      ++m_Report.flatCuts;
-      return;
-    }
-    const int    slices = static_cast<int>(m_Sections.size());
+    const int    slices = static_cast<int>(m_Pieces.size());
     const int    next = above ? k + 1 : k - 1, previous = above ? k - 1 : k + 1;
     const double here = m_Stack.GetHeight(k);
     const auto   has = [slices](int s) { return s >= 0 && s < slices; };
     const double reach = has(next) ? std::abs(m_Stack.GetHeight(next) - here)
                                    : (has(previous) ? std::abs(m_Stack.GetHeight(previous) - here) : 1.0);
-    // Of a rounded end the area falls linearly with height; where it would reach 0 is the end.
-    double share = 0.5;
+    double       share = 0.5;
     if (has(previous))
     {
       const double area = OuterArea(k, i);
@@ -470,7 +357,7 @@ private:
       for (const Group & group : m_Groups[std::min(k, previous)])
       {
         const auto & own = above ? group.upper : group.lower;
-        if (std::count(own.begin(), own.end(), static_cast<int>(i)) > 0)
+        if (std::count(own.begin(), own.end(), i) > 0)
         {
           for (int j : above ? group.lower : group.upper)
           {
@@ -480,17 +367,39 @@ private:
       }
       share = before > area ? area / (before - area) : MostCapHeight;
     }
-    const double height = reach * std::clamp(share, LeastCapHeight, MostCapHeight);
-    m_Slabs.Cap(m_Sections[k][i], above ? here + height : here - height, above);
+    return reach * std::clamp(share, LeastCapHeight, MostCapHeight);
   }
 
   double
-  OuterArea(int k, std::size_t i) const
+  OuterArea(int k, int i) const
   {
-    return std::abs(SignedArea(OuterPolygon(m_Pool.plane, m_Sections[k][i])));
+    return std::abs(SignedArea(m_Pieces[k][i].loops.front().points));
   }
 
-  MeshArrays
+  /** Adds the holes around voids to m_Closed; true where there are any. */
+  bool
+  FindVoids(const MeshArrays & mesh)
+  {
+    const std::vector<char> around = PointsAroundVoids(mesh);
+    bool                    any = false;
+    for (std::size_t k = 0; k < m_Sections.size(); ++k)
+    {
+      for (std::size_t i = 0; i < m_Sections[k].size(); ++i)
+      {
+        std::size_t hole = 0;
+        for (const PieceOutline::Loop & loop : m_Pieces[k][i].loops)
+        {
+          if (loop.region == Region::Outside && around[m_Sections[k][i].holes[hole++].front()])
+          {
+            any = m_Closed[k].insert(loop.id).second || any;
+          }
+        }
+      }
+    }
+    return any;
+  }
+
+  std::optional<MeshArrays>
   Assemble()
   {
     MeshArrays mesh;
@@ -502,24 +411,17 @@ private:
       mesh.tetrahedra.push_back(t.vertices);
       mesh.region.push_back(t.region);
     }
-    RemoveUnusedPoints(mesh);
     mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+    if (FindVoids(mesh))
+    {
+      return std::nullopt;
+    }
+    RemoveUnusedPoints(mesh);
     Progress(0.95);
     const MeshValidation validation = ValidateMesh(mesh);
     if (!validation.IsValid())
     {
-      std::vector<PieceId> layered;
-      for (const int k : PinchedInterfaceSlices(mesh))
-      {
-        for (std::size_t i = 0; i < m_Pieces[k].size(); ++i)
-        {
-          if (m_Pieces[k][i].loops.size() > 1)
-          {
-            layered.emplace_back(k, static_cast<int>(i));
-          }
-        }
-      }
-      throw SlabFailure("the contours cannot be tiled into a valid mesh: " + validation.Summary(), layered);
+      throw std::runtime_error("the contours cannot be tiled into a valid mesh: " + validation.Summary());
     }
     Progress(1.0);
     return mesh;
@@ -527,7 +429,7 @@ private:
 
   const ContourStack &                   m_Stack;
   const TilingParameters &               m_Parameters;
-  const std::set<PieceId> &              m_Plain;
+  ClosedHoles &                          m_Closed;
   TilingReport &                         m_Report;
   VertexPool                             m_Pool;
   std::vector<TiledTetra>                m_Tetrahedra;
@@ -536,7 +438,6 @@ private:
   std::vector<std::vector<PieceOutline>> m_Pieces;
   std::vector<PlanarTree>                m_Carried; ///< axes from below for the slice built last
   std::vector<std::vector<Group>>        m_Groups;  ///< of slice k and k + 1
-  std::vector<std::vector<char>>         m_CappedBelow, m_CappedAbove;
 };
 } // namespace
 
@@ -557,22 +458,14 @@ TileContours(const ContourStack & stack, const TilingParameters & parameters, Ti
                              " slice(s); a mesh needs at least two slices with closed contours");
   }
   const SpanLengthMetric span;
-  std::set<PieceId>      plain;
+  ClosedHoles            holes(stack.GetSlices().size());
   for (;;)
   {
     report = TilingReport();
-    StackTiler tiler(stack, parameters.metric ? *parameters.metric : span, parameters, plain, report);
-    try
+    StackTiler tiler(stack, parameters.metric ? *parameters.metric : span, parameters, holes, report);
+    if (auto mesh = tiler.Run())
     {
-      return tiler.Run();
-    }
-    catch (const SlabFailure & failure)
-    {
-      if (failure.GetPieces().empty())
-      {
-        throw;
-      }
-      plain.insert(failure.GetPieces().begin(), failure.GetPieces().end());
+      return std::move(*mesh);
     }
   }
 }

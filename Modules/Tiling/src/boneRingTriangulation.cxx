@@ -165,7 +165,7 @@ DegenerateRing(const Walk & walk)
 std::vector<PlanarTriangle>
 SectionTriangles(const Section & section)
 {
-  std::vector<PlanarTriangle> triangles;
+  std::vector<PlanarTriangle> triangles = section.patch;
   for (std::size_t k = 0; k < section.rings.size(); ++k)
   {
     const Walk & outer = section.walks[k];

@@ -3,7 +3,8 @@
  *=========================================================================*/
 #include "boneSectionBuilder.h"
 
-#include "boneOutlineInterpolation.h"
+#include "boneHalfwayLoop.h"
+#include "bonePatchSection.h"
 #include "boneRingTriangulation.h"
 
 #include <algorithm>
@@ -21,50 +22,6 @@ namespace
 constexpr double PruneFactor = 1.0;      // significance of the axis in clearances, see SimplifyAxis
 constexpr double AxisSpacing = 1.5;      // spacing along the axis in mean edges of its contour
 constexpr double LeastCarriedEdge = 0.4; // of the spacing
-constexpr int    RefinementRounds = 3;
-constexpr double LeastEdge = 0.6; // mm; shorter edges are not split
-
-double
-Distance(const Vector2 & q, const std::vector<Vector2> & polygon)
-{
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    const Vector2 & a = polygon[i];
-    const Vector2   d = polygon[(i + 1) % polygon.size()] - a;
-    const double    t = std::clamp((q - a).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
-    best = std::min(best, (q - a - t * d).norm());
-  }
-  return best;
-}
-
-std::string
-Place(std::size_t slice, int id)
-{
-  return "slice " + std::to_string(slice) + ", contour " + std::to_string(id) + ": ";
-}
-
-/** Splits the edges of `polygon` that are longer than twice the distance of their middle to `other`. */
-int
-RefineAgainst(std::vector<Vector2> & polygon, const std::vector<Vector2> & other)
-{
-  std::vector<Vector2> refined;
-  int                  added = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    const Vector2 & a = polygon[i];
-    const Vector2 & b = polygon[(i + 1) % polygon.size()];
-    const Vector2   middle = 0.5 * (a + b);
-    refined.push_back(a);
-    if ((b - a).norm() > std::max(2 * LeastEdge, 3.0 * Distance(middle, other)))
-    {
-      refined.push_back(middle);
-      ++added;
-    }
-  }
-  polygon = std::move(refined);
-  return added;
-}
 
 /** Builds the walks and rings of one piece, vertices going into the pool. */
 class SectionMaker
@@ -139,7 +96,7 @@ private:
 
 /** The polylines of a given medial axis as one tree; without points where they are not one. */
 PlanarTree
-JoinAxis(const std::vector<std::vector<Vector2>> & polylines)
+JoinAxis(const std::vector<PieceOutline::Axis> & polylines)
 {
   PlanarTree                               tree;
   std::map<std::pair<double, double>, int> ids;
@@ -151,7 +108,7 @@ JoinAxis(const std::vector<std::vector<Vector2>> & polylines)
     }
     return it->second;
   };
-  for (const auto & line : polylines)
+  for (const auto & [line, layer] : polylines)
   {
     for (std::size_t i = 0; i < line.size(); ++i)
     {
@@ -186,15 +143,16 @@ SectionMaker::Candidate
 OwnAxis(SectionMaker & maker, const PieceOutline & piece, const Section & section, TilingReport & report)
 {
   const auto & loop = piece.loops.back();
-  if (!piece.axis.empty())
+  if (!piece.axes.empty())
   {
-    auto given = maker.Evaluate(JoinAxis(piece.axis), section);
+    auto given = maker.Evaluate(JoinAxis(piece.axes), section);
     if (std::isfinite(given.cost))
     {
       return given;
     }
     ++report.axesRecomputed;
-    report.notes.push_back(Place(section.slice, loop.id) + "the medial axis given cannot be tiled and was recomputed");
+    report.notes.push_back(PlaceOf(section.slice, loop.id) +
+                           "the medial axis given cannot be tiled and was recomputed");
   }
   const PlanarTree chordal = ChordalAxis(loop.points);
   const double     spacing = AxisSpacing * MeanEdge(loop.points);
@@ -242,148 +200,46 @@ AddAxis(SectionMaker &       maker,
   return true;
 }
 
-/** Adds the inner loops; false where a ring cannot be triangulated, `failed` then being the index of its inner loop. */
+/** Adds the loops but for a hole; false where a ring between them cannot be triangulated. */
 bool
-AddLoops(SectionMaker &       maker,
-         const PieceOutline & piece,
-         const VertexPool &   pool,
-         Section &            section,
-         std::size_t &        failed)
+AddLoops(SectionMaker & maker, const PieceOutline & piece, const VertexPool & pool, Section & section)
 {
-  for (std::size_t k = 0; k < piece.loops.size(); ++k)
+  for (const PieceOutline::Loop & loop : piece.loops)
   {
-    const Walk walk = maker.AddLoop(piece.loops[k].points, piece.loops[k].layer);
-    if (k > 0)
+    if (loop.region == Region::Outside)
+    {
+      break;
+    }
+    const Walk walk = maker.AddLoop(loop.points, loop.layer);
+    if (!section.walks.empty())
     {
       Merge ring;
       if (!std::isfinite(TriangulateRing(pool.plane, section.walks.back(), walk, ring)))
       {
-        failed = k;
         return false;
       }
       section.rings.push_back(std::move(ring));
     }
     section.walks.push_back(walk);
-    section.region.push_back(piece.loops[k].region);
+    section.region.push_back(loop.region);
   }
   return true;
 }
-} // namespace
 
-std::vector<PieceOutline>
-CollectPieces(const ContourStack & stack, std::size_t slice, TilingReport & report)
-{
-  std::vector<PieceOutline>       pieces;
-  std::vector<PieceOutline::Loop> inner;
-  std::vector<PieceOutline::Loop> holes;
-  std::vector<const Contour *>    axes;
-  for (const Contour & contour : stack.GetSlices()[slice].contours)
-  {
-    if (contour.axis)
-    {
-      axes.push_back(&contour);
-      continue;
-    }
-    PieceOutline::Loop loop;
-    for (const Vector3 & p : contour.points)
-    {
-      loop.points.push_back(stack.ToPlane(p));
-    }
-    if (SignedArea(loop.points) < 0)
-    {
-      std::reverse(loop.points.begin(), loop.points.end());
-    }
-    loop.layer = contour.layer;
-    loop.region = contour.region;
-    loop.id = contour.id;
-    if (loop.region == Region::Outside)
-    {
-      holes.push_back(std::move(loop));
-    }
-    else if (loop.layer == 0)
-    {
-      pieces.emplace_back();
-      pieces.back().loops.push_back(std::move(loop));
-    }
-    else
-    {
-      inner.push_back(std::move(loop));
-    }
-  }
-  const auto owner = [&pieces](const Vector2 & q) -> PieceOutline * {
-    for (PieceOutline & piece : pieces)
-    {
-      if (PointInPolygon(q, piece.loops.front().points))
-      {
-        return &piece;
-      }
-    }
-    return nullptr;
-  };
-  for (auto & hole : holes)
-  {
-    PieceOutline * piece = owner(hole.points.front());
-    if (piece == nullptr || std::abs(SignedArea(hole.points)) <= std::abs(SignedArea(piece->hole)))
-    {
-      ++report.holesLeftOut;
-      report.notes.push_back(Place(slice, hole.id) + "hole left out, one hole a piece is tiled");
-      continue;
-    }
-    if (!piece->hole.empty())
-    {
-      ++report.holesLeftOut;
-      report.notes.push_back(Place(slice, hole.id) + "took the place of a smaller hole of the same piece");
-    }
-    piece->hole = hole.points;
-  }
-  // Larger loops first within a layer, so that the largest of each layer is the one that is kept.
-  std::stable_sort(inner.begin(), inner.end(), [](const PieceOutline::Loop & a, const PieceOutline::Loop & b) {
-    return a.layer != b.layer ? a.layer < b.layer : SignedArea(a.points) > SignedArea(b.points);
-  });
-  for (auto & loop : inner)
-  {
-    PieceOutline * piece = owner(loop.points.front());
-    if (piece == nullptr || !piece->hole.empty() || loop.layer <= piece->loops.back().layer ||
-        loop.region <= piece->loops.back().region || !PointInPolygon(loop.points.front(), piece->loops.back().points))
-    {
-      ++report.loopsLeftOut;
-      report.notes.push_back(Place(slice, loop.id) + "inner contour left out, one a layer and piece is tiled");
-      continue;
-    }
-    piece->loops.push_back(std::move(loop));
-  }
-  for (const Contour * axis : axes)
-  {
-    std::vector<Vector2> line;
-    for (const Vector3 & p : axis->points)
-    {
-      line.push_back(stack.ToPlane(p));
-    }
-    PieceOutline * piece = line.empty() ? nullptr : owner(line.front());
-    if (piece != nullptr && axis->layer == piece->loops.back().layer + 1 &&
-        PointInPolygon(line.front(), piece->loops.back().points))
-    {
-      piece->axis.push_back(std::move(line));
-    }
-  }
-  return pieces;
-}
-
-namespace
-{
 /** Adds the two rings about the loop halfway to the hole, or, where they cannot be triangulated, one ring to the hole.
  */
 bool
 AddHole(SectionMaker & maker, const PieceOutline & piece, VertexPool & pool, Section & section)
 {
   const Walk outer = section.walks.back();
-  const Walk hole = maker.AddLoop(piece.hole, 0);
-  const auto halfway = HalfwayLoop(piece.loops.back().points, piece.hole);
+  const Walk hole = maker.AddLoop(piece.loops.back().points, piece.loops.back().layer);
+  const auto halfway = HalfwayLoop(piece.loops.front().points, piece.loops.back().points);
   Merge      inside, outside;
   section.hole = true;
+  section.holes = { hole };
   if (halfway.size() > 2)
   {
-    const Walk middle = maker.AddLoop(halfway, piece.loops.back().layer + 1);
+    const Walk middle = maker.AddLoop(halfway, piece.loops.front().layer + 1);
     if (std::isfinite(TriangulateRing(pool.plane, outer, middle, outside)) &&
         std::isfinite(TriangulateRing(pool.plane, middle, hole, inside)))
     {
@@ -432,62 +288,23 @@ BuildSection(const ContourStack & stack,
              VertexPool &         pool,
              TilingReport &       report)
 {
-  for (int round = 0; round < RefinementRounds; ++round)
-  {
-    int added = 0;
-    for (std::size_t k = 1; k < piece.loops.size(); ++k)
-    {
-      added += RefineAgainst(piece.loops[k - 1].points, piece.loops[k].points);
-      added += RefineAgainst(piece.loops[k].points, piece.loops[k - 1].points);
-    }
-    if (!piece.hole.empty())
-    {
-      added += RefineAgainst(piece.loops.back().points, piece.hole);
-      added += RefineAgainst(piece.hole, piece.loops.back().points);
-    }
-    report.edgesRefined += added;
-    if (added == 0)
-    {
-      break;
-    }
-  }
-  SectionMaker      maker(stack, slice, height, pool);
+  report.edgesRefined += RefineThinLayers(piece);
   const std::size_t mark = pool.plane.size();
-  for (;;)
+  if (piece.IsChain())
   {
-    Section section;
+    SectionMaker maker(stack, slice, height, pool);
+    Section      section;
     section.slice = slice;
-    std::size_t failed = 0;
-    if (!AddLoops(maker, piece, pool, section, failed))
-    {
-      pool.Resize(mark);
-      ++report.loopsLeftOut;
-      report.notes.push_back(Place(slice, piece.loops[failed].id) +
-                             "inner contour left out, the layer outside it cannot be triangulated");
-      piece.loops.erase(piece.loops.begin() + static_cast<std::ptrdiff_t>(failed));
-      piece.axis.clear();
-      continue;
-    }
-    if (!piece.hole.empty())
-    {
-      if (AddHole(maker, piece, pool, section))
-      {
-        return Finished(std::move(section));
-      }
-      pool.Resize(mark);
-      ++report.holesLeftOut;
-      report.notes.push_back(Place(slice, piece.loops.front().id) +
-                             "its hole was closed, the ring cannot be triangulated");
-      piece.hole.clear();
-      continue;
-    }
-    if (AddAxis(maker, piece, carried, tolerance, section, report))
+    const bool hole = piece.loops.back().region == Region::Outside;
+    if (AddLoops(maker, piece, pool, section) &&
+        (hole ? AddHole(maker, piece, pool, section) : AddAxis(maker, piece, carried, tolerance, section, report)))
     {
       return Finished(std::move(section));
     }
-    throw std::runtime_error(Place(slice, piece.loops.back().id) +
-                             "cannot be triangulated; does the contour cross itself?");
+    pool.Resize(mark);
   }
+  ++report.patches;
+  return BuildPatch(stack, piece, slice, height, pool);
 }
 } // namespace tiling
 } // namespace bone

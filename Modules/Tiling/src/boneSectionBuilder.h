@@ -4,9 +4,8 @@
 #ifndef boneSectionBuilder_h
 #define boneSectionBuilder_h
 
-#include "boneContourStack.h"
+#include "bonePieceOutline.h"
 #include "boneRingTriangulation.h"
-#include "boneTilingReport.h"
 #include "boneTilingTypes.h"
 
 namespace bone
@@ -16,34 +15,11 @@ namespace tiling
 /** Default of `tolerance` in BuildSection. */
 constexpr double CarriedTolerance = 1.12;
 
-/** One nested piece of a slice before it is triangulated: polygons in the plane, all counter-clockwise. */
-struct PieceOutline
-{
-  struct Loop
-  {
-    std::vector<Vector2> points;
-    int                  layer{ 0 };
-    int                  region{ 1 };
-    int                  id{ 0 };
-  };
-  /** Outside in, each inside the one before. */
-  std::vector<Loop> loops;
-  /** A hole in the bone; empty where there is none. */
-  std::vector<Vector2> hole;
-  /** Medial axis of the innermost loop as given; without points where none was. */
-  std::vector<std::vector<Vector2>> axis;
-};
-
-/** Sorts the contours of a slice into nested pieces. What the tiling cannot take (a second inner contour of the same
- * layer, a second hole, an inner contour beside a hole) is left out and counted in the report. */
-std::vector<PieceOutline>
-CollectPieces(const ContourStack & stack, std::size_t slice, TilingReport & report);
-
 /** Triangulates a piece: rings between its loops, the innermost about its medial axis or hole. The medial axis of the
  * piece below, `carried`, is taken on where its ring costs at most `tolerance` times that about the piece's own, so
- * that the walls between axes stay upright. Edges too long for a thin layer are split; a loop whose ring cannot be
- * triangulated is left out. Both are counted. Throws std::runtime_error where even the outer contour alone cannot be
- * triangulated (it crosses itself). */
+ * that the walls between axes stay upright. Edges too long for a thin layer are split, which is counted. A piece whose
+ * loops do not form a chain, or that has a ring that cannot be triangulated, becomes a patch (\ref BuildPatch). Throws
+ * std::runtime_error where contours touch or cross. */
 Section
 BuildSection(const ContourStack & stack,
              PieceOutline         piece,

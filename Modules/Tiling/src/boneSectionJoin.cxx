@@ -398,105 +398,6 @@ JoinSections(const std::vector<Vector2> & plane,
   return true;
 }
 
-bool
-CutOpen(const std::vector<Vector2> & plane, const Section & ring, const std::vector<Vector2> & other, Section & open)
-{
-  if (!ring.hole || ring.walks.size() != 3)
-  {
-    return false;
-  }
-  const Walk & outer = ring.walks[0];
-  const Walk & middle = ring.walks[1];
-  const Walk & hole = ring.walks[2];
-  const int    n = static_cast<int>(middle.size());
-  // The longest run of the loop inside the other piece; the rest is the mouth.
-  std::vector<char> covered;
-  for (int v : middle)
-  {
-    covered.push_back(PointInPolygon(plane[v], other) ? 1 : 0);
-  }
-  int first = -1, length = 0;
-  for (int i = 0; i < n; ++i)
-  {
-    int run = 0;
-    while (run < n && covered[(i + run) % n])
-    {
-      ++run;
-    }
-    if (run > length && run < n)
-    {
-      first = i;
-      length = run;
-    }
-  }
-  if (first < 0 || length < 3)
-  {
-    return false;
-  }
-  const int last = first + length - 1;
-  // States of both rings between the first spanning edge at either end of the run.
-  struct Segment
-  {
-    std::vector<int>          a, b;
-    std::vector<std::uint8_t> letters;
-  };
-  const auto segment = [&](const Merge & word, const Walk & out, const Walk & in, bool middleIsOuter) {
-    Segment    result;
-    const int  count = static_cast<int>(word.letters.size());
-    int        i = word.first, j = word.second;
-    int        s = 0;
-    const auto position = [&] { return (middleIsOuter ? i : j) % n; };
-    const auto step = [&] { (word.letters[s++ % count] == 0 ? i : j) += 1; };
-    while (position() != first)
-    {
-      step();
-    }
-    for (;;)
-    {
-      result.a.push_back(out[i % out.size()]);
-      result.b.push_back(in[j % in.size()]);
-      if (position() == last % n)
-      {
-        return result;
-      }
-      result.letters.push_back(word.letters[s % count]);
-      step();
-    }
-  };
-  const Segment outside = segment(ring.rings[0], outer, middle, false);
-  const Segment inside = segment(ring.rings[1], middle, hole, true);
-
-  open = Section{};
-  open.slice = ring.slice;
-  open.region = { ring.region[0] };
-  open.depth = 1;
-  Walk  around, axis;
-  Merge word;
-  around.push_back(outside.a.front());
-  axis.push_back(outside.b.front());
-  for (std::size_t s = 0; s < outside.letters.size(); ++s)
-  {
-    word.letters.push_back(outside.letters[s]);
-    outside.letters[s] == 0 ? around.push_back(outside.a[s + 1]) : axis.push_back(outside.b[s + 1]);
-  }
-  around.push_back(inside.a.back());
-  around.push_back(inside.b.back());
-  word.letters.insert(word.letters.end(), 2, 0);
-  for (std::size_t s = inside.letters.size(); s-- > 0;)
-  {
-    word.letters.push_back(inside.letters[s] == 0 ? 1 : 0);
-    inside.letters[s] == 0 ? axis.push_back(inside.a[s]) : around.push_back(inside.b[s]);
-  }
-  around.push_back(inside.a.front());
-  word.letters.insert(word.letters.end(), 2, 0);
-  axis.pop_back(); // the walk round the axis ends where it began
-  open.walks = { around, axis };
-  open.inner = { axis };
-  open.spurs.resize(1);
-  open.rings = { word };
-  return true;
-}
-
 Merge
 WithSpurs(const std::vector<Vector2> & plane,
           const Section &              lower,
@@ -583,6 +484,10 @@ Compose(const std::vector<Vector2> & plane,
   std::vector<Section> aligned;
   for (const Section & section : sections)
   {
+    if (!section.patch.empty())
+    {
+      return false;
+    }
     aligned.push_back(WithRegions(section, regions));
   }
   return JoinSections(plane, aligned, used, composite);

@@ -32,17 +32,12 @@ JoinSections(const std::vector<Vector2> & plane,
              EdgeSet &                    used,
              Section &                    composite);
 
-/** A piece round a hole, cut open where `other`, an open ring on the neighbouring slice, has its mouth: its triangles
- * there stay without a counterpart. The result goes round the rest of the loop halfway to the hole as its axis. False
- * where the piece has no such loop, or `other` has no mouth across it. */
-bool
-CutOpen(const std::vector<Vector2> & plane, const Section & ring, const std::vector<Vector2> & other, Section & open);
-
 /** Ascending regions of all the sections. */
 std::vector<int>
 RegionsOf(const std::vector<Section> & sections);
 
-/** The sections of one plane as one: aligned to the regions, joined where there are several. */
+/** The sections of one plane as one: aligned to the regions, joined where there are several. False where one has no
+ * rings, or no bridge was found. */
 bool
 Compose(const std::vector<Vector2> & plane,
         const std::vector<Section> & sections,

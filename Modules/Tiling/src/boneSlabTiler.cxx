@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneSlabTiler.h"
 
-#include "boneOutlineInterpolation.h"
 #include "bonePredicates.h"
 #include "boneRingTriangulation.h"
 #include "boneSectionJoin.h"
@@ -20,32 +19,7 @@ namespace tiling
 {
 namespace
 {
-constexpr int KnitBudget = 60;         // ring knits tried before another way is taken
-constexpr int MaximumDepth = 3;        // halvings of a slab by planes in between
-constexpr int LayeredPlaneBudget = 14; // planes in between tried for one slab; without layers there is no other way
-constexpr int PlainPlaneBudget = 60;
-
-std::vector<std::vector<Vector2>>
-OuterPolygons(const std::vector<Vector2> & plane, const std::vector<Section> & sections)
-{
-  std::vector<std::vector<Vector2>> polygons;
-  for (const Section & section : sections)
-  {
-    polygons.push_back(OuterPolygon(plane, section));
-  }
-  return polygons;
-}
-
-std::vector<Section>
-Pick(const std::vector<Section> & sections, const std::vector<int> & ids)
-{
-  std::vector<Section> picked;
-  for (int i : ids)
-  {
-    picked.push_back(sections[i]);
-  }
-  return picked;
-}
+constexpr int KnitBudget = 60; // ring knits tried before another way is taken
 } // namespace
 
 bool
@@ -114,7 +88,7 @@ SlabTiler::TryDirect(const std::vector<Section> & lower, const std::vector<Secti
   Section                below, above;
   EdgeSet                used = m_UsedEdges;
   if (!Compose(m_Pool.plane, lower, regions, used, below) || !Compose(m_Pool.plane, upper, regions, used, above) ||
-      !TryKnit(below, above, RingRegions(below, above)))
+      EndsOnBothSides(below, above) || !TryKnit(below, above, regions))
   {
     return false;
   }
@@ -122,39 +96,6 @@ SlabTiler::TryDirect(const std::vector<Section> & lower, const std::vector<Secti
   MarkCollapsed(below);
   MarkCollapsed(above);
   return true;
-}
-
-void
-SlabTiler::TileGroup(const std::vector<Section> & lower,
-                     const std::vector<Section> & upper,
-                     double                       lowerHeight,
-                     double                       upperHeight,
-                     int                          depth)
-{
-  if (depth == 0)
-  {
-    m_Budget = RegionsOf(lower).size() + RegionsOf(upper).size() > 2 ? LayeredPlaneBudget : PlainPlaneBudget;
-  }
-  if (TryDirect(lower, upper))
-  {
-    return;
-  }
-  if (TryIntermediate(lower, upper, lowerHeight, upperHeight, depth))
-  {
-    return;
-  }
-  const std::string place = "slice " + std::to_string(lower.front().slice) + ", piece of " +
-                            std::to_string(lower.front().walks[0].size()) + " points at (" +
-                            std::to_string(m_Pool.plane[lower.front().walks[0][0]].x()) + ", " +
-                            std::to_string(m_Pool.plane[lower.front().walks[0][0]].y()) + ") mm in the plane";
-  if (TryStar(lower, upper, 0.5 * (lowerHeight + upperHeight)))
-  {
-    ++m_Report.starFillings;
-    m_Report.notes.push_back(place + ": the slab above was filled from one interior vertex");
-    return;
-  }
-  throw std::runtime_error(place + ": the space to the next slice cannot be filled with valid tetrahedra; "
-                                   "use a smaller slice step or contour spacing");
 }
 
 void
@@ -166,189 +107,16 @@ SlabTiler::MarkCollapsed(const Section & section)
   }
 }
 
-std::vector<int>
-SlabTiler::RingRegions(const Section & lower, const Section & upper) const
+bool
+SlabTiler::EndsOnBothSides(const Section & lower, const Section & upper) const
 {
-  std::vector<int> regions = lower.region;
   for (const Section * section : { &lower, &upper })
   {
     const Walk & walk = section->walks.back();
-    if (std::any_of(walk.begin(), walk.end(), [this](int v) { return m_Collapsed.count(v) > 0; }))
+    if (section->depth < static_cast<int>(section->rings.size()) &&
+        std::any_of(walk.begin(), walk.end(), [this](int v) { return m_Collapsed.count(v) > 0; }))
     {
-      for (std::size_t k = static_cast<std::size_t>(section->depth); k < regions.size(); ++k)
-      {
-        regions[k] = regions[k - 1];
-      }
-    }
-  }
-  return regions;
-}
-
-bool
-SlabTiler::TryIntermediate(const std::vector<Section> & lower,
-                           const std::vector<Section> & upper,
-                           double                       lowerHeight,
-                           double                       upperHeight,
-                           int                          depth)
-{
-  if (depth >= MaximumDepth)
-  {
-    return false;
-  }
-  // The plane in between takes on the axis from below, or from above, or has one of its own; at last it does without
-  // inner layers.
-  const auto                    outlines = InterpolateOutlines(m_Pool.plane, m_Pool.layer, lower, upper);
-  const std::vector<PlanarTree> axes{ AxisOf(lower), AxisOf(upper), PlanarTree{} };
-  for (const bool layered : { true, false })
-  {
-    auto pieces = outlines;
-    for (PieceOutline & piece : pieces)
-    {
-      piece.loops.resize(layered ? piece.loops.size() : 1);
-    }
-    for (const PlanarTree & axis : axes)
-    {
-      if (m_Budget-- <= 0)
-      {
-        return false;
-      }
-      if (TryPlane(lower, upper, lowerHeight, upperHeight, depth, pieces, axis))
-      {
-        ++m_Report.intermediateSlices;
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-bool
-SlabTiler::TryPlane(const std::vector<Section> &      lower,
-                    const std::vector<Section> &      upper,
-                    double                            lowerHeight,
-                    double                            upperHeight,
-                    int                               depth,
-                    const std::vector<PieceOutline> & pieces,
-                    const PlanarTree &                axis)
-{
-  const std::size_t  tetraMark = m_Tetrahedra.size(), poolMark = m_Pool.plane.size();
-  const TilingReport reportMark = m_Report;
-  const EdgeSet      usedMark = m_UsedEdges;
-  const double       height = 0.5 * (lowerHeight + upperHeight);
-  try
-  {
-    std::vector<Section> middle;
-    for (const PieceOutline & piece : pieces)
-    {
-      middle.push_back(BuildSection(
-        m_Stack, piece, axis, std::numeric_limits<double>::max(), lower.front().slice, height, m_Pool, m_Report));
-    }
-    const auto connect = [&](const std::vector<Section> & a, const std::vector<Section> & b, double ha, double hb) {
-      const std::size_t begin = m_Tetrahedra.size();
-      for (const Group & group : MatchPieces(OuterPolygons(m_Pool.plane, a), OuterPolygons(m_Pool.plane, b), hb - ha))
-      {
-        if (group.lower.empty() || group.upper.empty())
-        {
-          throw std::runtime_error("a piece lost its counterpart");
-        }
-        TileGroup(Pick(a, group.lower), Pick(b, group.upper), ha, hb, depth + 1);
-      }
-      if (WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, ha, hb))
-      {
-        throw std::runtime_error("surfaces cross");
-      }
-    };
-    if (!middle.empty())
-    {
-      connect(lower, middle, lowerHeight, height);
-      connect(middle, upper, height, upperHeight);
       return true;
-    }
-  }
-  catch (const std::runtime_error &)
-  {
-    // This way failed; the caller goes on to the next one.
-  }
-  m_Tetrahedra.resize(tetraMark);
-  m_Pool.Resize(poolMark);
-  m_Report = reportMark;
-  m_UsedEdges = usedMark;
-  return false;
-}
-
-PlanarTree
-SlabTiler::AxisOf(const std::vector<Section> & sections) const
-{
-  Section composite;
-  EdgeSet used;
-  return Compose(m_Pool.plane, sections, RegionsOf(sections), used, composite) && !composite.hole
-           ? TreeOfWalk(m_Pool.plane, composite.walks.back())
-           : PlanarTree{};
-}
-
-void
-SlabTiler::AddWallCells(const Walk & lower, const Walk & upper, const Merge & wall, int apex)
-{
-  int i = wall.first, j = wall.second;
-  for (std::uint8_t letter : wall.letters)
-  {
-    const int a = lower[i % lower.size()], c = upper[j % upper.size()];
-    (letter == 0 ? i : j) += 1;
-    const int next = letter == 0 ? lower[i % lower.size()] : upper[j % upper.size()];
-    if (a != next && c != next)
-    {
-      m_Tetrahedra.push_back({ { { a, next, apex, c } }, Region::Cortical });
-    }
-  }
-}
-
-bool
-SlabTiler::TryStar(const std::vector<Section> & lowers, const std::vector<Section> & uppers, double height)
-{
-  if (lowers.size() > 1 || uppers.size() > 1 || lowers.front().hole || uppers.front().hole)
-  {
-    return false;
-  }
-  const Section &      lower = lowers.front();
-  const Section &      upper = uppers.front();
-  std::vector<Vector2> centres;
-  for (const Section * section : { &lower, &upper })
-  {
-    for (int v : section->walks.back())
-    {
-      centres.push_back(m_Pool.plane[v]);
-    }
-  }
-  Merge wall;
-  for (int variant = 0; MergeClosedWalks(m_Pool.plane, lower.walks[0], upper.walks[0], variant, wall); ++variant)
-  {
-    for (const Vector2 & centre : centres)
-    {
-      const std::size_t mark = m_Tetrahedra.size();
-      const int         p =
-        m_Pool.Add(centre, m_Stack.FromPlane(centre, height), static_cast<int>(lower.region.size()), lower.slice);
-      for (const PlanarTriangle & t : SectionTriangles(lower))
-      {
-        m_Tetrahedra.push_back({ { { t.vertices[0], t.vertices[1], t.vertices[2], p } }, Region::Cortical });
-      }
-      for (const PlanarTriangle & t : SectionTriangles(upper))
-      {
-        m_Tetrahedra.push_back({ { { t.vertices[0], t.vertices[2], t.vertices[1], p } }, Region::Cortical });
-      }
-      AddWallCells(lower.walks[0], upper.walks[0], wall, p);
-      const bool valid = std::all_of(
-        m_Tetrahedra.begin() + static_cast<std::ptrdiff_t>(mark), m_Tetrahedra.end(), [&](const TiledTetra & t) {
-          return Orient3D(m_Pool.space[t.vertices[0]],
-                          m_Pool.space[t.vertices[1]],
-                          m_Pool.space[t.vertices[2]],
-                          m_Pool.space[t.vertices[3]]) > 0;
-        });
-      if (valid)
-      {
-        return true;
-      }
-      m_Tetrahedra.resize(mark);
-      m_Pool.Resize(m_Pool.plane.size() - 1);
     }
   }
   return false;
@@ -393,37 +161,22 @@ SlabTiler::RidgeOver(const Section & section, double height)
   return ridge;
 }
 
-void
-SlabTiler::Cap(const Section & section, double height, bool above)
+bool
+SlabTiler::TryCap(const Section & section, double height, bool above)
 {
-  if (section.hole)
+  if (section.hole || !section.patch.empty())
   {
-    ++m_Report.flatCuts;
-    m_Report.notes.push_back("slice " + std::to_string(section.slice) + ": an end with a hole was left flat");
-    return;
+    return false;
   }
-  ++m_Report.caps;
   const std::size_t      mark = m_Pool.plane.size();
   const Section          ridge = RidgeOver(section, height);
   const std::vector<int> cortical(section.rings.size(), Region::Cortical);
   if (above ? TryKnit(section, ridge, cortical) : TryKnit(ridge, section, cortical))
   {
-    return;
+    return true;
   }
-  const Vector2 apex = m_Pool.plane[ridge.walks[0][ridge.walks[0].size() / 4]];
   m_Pool.Resize(mark);
-  CapByCone(section, apex, height, above);
-}
-
-void
-SlabTiler::CapByCone(const Section & section, const Vector2 & apex, double height, bool above)
-{
-  const int v = m_Pool.Add(apex, m_Stack.FromPlane(apex, height), 0, section.slice);
-  for (const PlanarTriangle & t : SectionTriangles(section))
-  {
-    const int b = above ? t.vertices[1] : t.vertices[2], c = above ? t.vertices[2] : t.vertices[1];
-    m_Tetrahedra.push_back({ { { t.vertices[0], b, c, v } }, Region::Cortical });
-  }
+  return false;
 }
 
 namespace

@@ -34,18 +34,10 @@ public:
   bool
   TryDirect(const std::vector<Section> & lower, const std::vector<Section> & upper);
 
-  /** Tiles the sections of two planes at the given heights that belong together: one on one side at least, none of the
-   * sides empty. Throws std::runtime_error where every way fails. */
-  void
-  TileGroup(const std::vector<Section> & lower,
-            const std::vector<Section> & upper,
-            double                       lowerHeight,
-            double                       upperHeight,
-            int                          depth = 0);
-
-  /** Closes a section by a ridge over its medial axis at `height` (above or below its own); always succeeds. */
-  void
-  Cap(const Section & section, double height, bool above);
+  /** Closes a section by a ridge over its medial axis at `height` (above or below its own), if it has one and that can
+   * be done. */
+  bool
+  TryCap(const Section & section, double height, bool above);
 
 private:
   bool
@@ -57,34 +49,12 @@ private:
            const Merge &            wall,
            const std::vector<int> & regions,
            int &                    budget);
-  /** Region of each ring of the slab. A layer that ends at an axis where it already ended from the other side ends at
-   * the slice before instead, with a flat face: four of its faces would meet at the axis. */
-  std::vector<int>
-  RingRegions(const Section & lower, const Section & upper) const;
+  /** Whether a layer would end at an axis where it already ended from the other side: four of its faces would meet
+   * there. */
+  bool
+  EndsOnBothSides(const Section & lower, const Section & upper) const;
   void
   MarkCollapsed(const Section & section);
-  bool
-  TryIntermediate(const std::vector<Section> & lower,
-                  const std::vector<Section> & upper,
-                  double                       lowerHeight,
-                  double                       upperHeight,
-                  int                          depth);
-  bool
-  TryPlane(const std::vector<Section> &      lower,
-           const std::vector<Section> &      upper,
-           double                            lowerHeight,
-           double                            upperHeight,
-           int                               depth,
-           const std::vector<PieceOutline> & pieces,
-           const PlanarTree &                axis);
-  PlanarTree
-  AxisOf(const std::vector<Section> & sections) const;
-  bool
-  TryStar(const std::vector<Section> & lowers, const std::vector<Section> & uppers, double height);
-  void
-  AddWallCells(const Walk & lower, const Walk & upper, const Merge & wall, int apex);
-  void
-  CapByCone(const Section & section, const Vector2 & apex, double height, bool above);
   Section
   RidgeOver(const Section & section, double height);
 
@@ -95,7 +65,6 @@ private:
   TilingReport &            m_Report;
   EdgeSet                   m_UsedEdges; ///< edges that bridges run along
   std::set<int>             m_Collapsed; ///< vertices of axes at which a layer ends
-  int                       m_Budget{ 0 };
 };
 
 /** True where the outer walls of the tetrahedra from `begin` on cross each other, looked at in planes between the

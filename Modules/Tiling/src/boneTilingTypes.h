@@ -82,6 +82,13 @@ RegionOfSlot(int slot)
   return slot % InnerHalf;
 }
 
+/** A triangle of a section, counter-clockwise. */
+struct PlanarTriangle
+{
+  std::array<int, 3> vertices;
+  int                region;
+};
+
 /** The planar structure of one piece of bone on a slice, or of several joined by bridges (the paper's composite
  * contour): nested walks from the outer contour to the innermost walk (medial axis or hole) and the triangulated rings
  * between them. */
@@ -102,6 +109,10 @@ struct Section
   bool hole{ false };
   /** Index of the slice, for reports. */
   int slice{ 0 };
+  /** Contours of the holes in it, counter-clockwise; not of composites. */
+  std::vector<Walk> holes;
+  /** Triangles of a piece that has no rings; its only walk is the outer contour. */
+  std::vector<PlanarTriangle> patch;
 };
 
 /** The wall of a ring's inner walks from the wall of the walks of the layer inside: each detour is walked where the
@@ -113,13 +124,7 @@ WithSpurs(const std::vector<Vector2> & plane,
           int                          ring,
           const Merge &                wall);
 
-/** A triangle of a section's ring, counter-clockwise. */
-struct PlanarTriangle
-{
-  std::array<int, 3> vertices;
-  int                region;
-};
-
+/** All triangles of a section, with their regions. */
 std::vector<PlanarTriangle>
 SectionTriangles(const Section & section);
 } // namespace tiling

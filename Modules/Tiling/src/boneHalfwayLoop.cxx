@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneOutlineInterpolation.h"
+#include "boneHalfwayLoop.h"
 
 #include "boneContourStack.h"
 
@@ -35,24 +35,19 @@ struct Grid
   }
 };
 
-/** Signed distance to a set of disjoint polygons, negative inside. */
+/** Signed distance to a polygon, negative inside. */
 double
-SignedDistance(const Vector2 & q, const std::vector<Polygon> & polygons)
+SignedDistance(const Vector2 & q, const Polygon & polygon)
 {
   double best = std::numeric_limits<double>::infinity();
-  bool   inside = false;
-  for (const Polygon & polygon : polygons)
+  for (std::size_t i = 0; i < polygon.size(); ++i)
   {
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-    {
-      const Vector2 & a = polygon[i];
-      const Vector2   d = polygon[(i + 1) % polygon.size()] - a;
-      const double    t = std::clamp((q - a).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
-      best = std::min(best, (q - a - t * d).squaredNorm());
-    }
-    inside = inside != PointInPolygon(q, polygon);
+    const Vector2 & a = polygon[i];
+    const Vector2   d = polygon[(i + 1) % polygon.size()] - a;
+    const double    t = std::clamp((q - a).dot(d) / std::max(d.squaredNorm(), 1e-300), 0.0, 1.0);
+    best = std::min(best, (q - a - t * d).squaredNorm());
   }
-  return inside ? -std::sqrt(best) : std::sqrt(best);
+  return PointInPolygon(q, polygon) ? -std::sqrt(best) : std::sqrt(best);
 }
 
 /** Closed polygons of the zero level, material (negative) on the left. */
@@ -134,70 +129,15 @@ ResampleClosed(const Polygon & polygon, double spacing)
   return result;
 }
 
-/** The real loops of sections by region, with their layer and spacing. */
-struct LayerLoops
-{
-  std::vector<Polygon> loops;
-  int                  layer{ 0 };
-  double               length{ 0.0 };
-  std::size_t          points{ 0 };
-};
-
-std::map<int, LayerLoops>
-CollectLoops(const std::vector<Vector2> & plane,
-             const std::vector<int> &     layerOfVertex,
-             const std::vector<Section> & sections)
-{
-  std::map<int, LayerLoops> result;
-  for (const Section & section : sections)
-  {
-    for (std::size_t k = 0; k < section.region.size(); ++k)
-    {
-      if (section.region[k] >= InnerHalf)
-      {
-        continue;
-      }
-      LayerLoops & layer = result[section.region[k]];
-      Polygon      polygon;
-      for (int v : section.walks[k])
-      {
-        polygon.push_back(plane[v]);
-      }
-      for (std::size_t i = 0; i < polygon.size(); ++i)
-      {
-        layer.length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
-      }
-      layer.points += polygon.size();
-      layer.layer = layerOfVertex[section.walks[k].front()];
-      layer.loops.push_back(std::move(polygon));
-    }
-    if (section.hole)
-    {
-      Polygon hole;
-      for (int v : section.walks.back())
-      {
-        hole.push_back(plane[v]);
-      }
-      result[section.region.front()].loops.push_back(std::move(hole));
-    }
-  }
-  return result;
-}
-
+/** Where the distances to two polygons, one inside the other, are equal. */
 std::vector<Polygon>
-MeanLevel(const LayerLoops & lower, const LayerLoops & upper)
+MeanLevel(const Polygon & outer, const Polygon & inner)
 {
-  Vector2 low = lower.loops.front().front(), high = low;
-  for (const auto * side : { &lower, &upper })
+  Vector2 low = outer.front(), high = low;
+  for (const Vector2 & q : outer)
   {
-    for (const Polygon & polygon : side->loops)
-    {
-      for (const Vector2 & q : polygon)
-      {
-        low = low.cwiseMin(q);
-        high = high.cwiseMax(q);
-      }
-    }
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
   }
   Grid grid;
   grid.step = std::max((high - low).maxCoeff() / GridCells, 1e-3);
@@ -210,7 +150,7 @@ MeanLevel(const LayerLoops & lower, const LayerLoops & upper)
     for (int i = 0; i < grid.nx; ++i)
     {
       const Vector2 q = grid.origin + grid.step * Vector2(i, j);
-      double        value = SignedDistance(q, lower.loops) + SignedDistance(q, upper.loops);
+      double        value = SignedDistance(q, outer) + SignedDistance(q, inner);
       grid.At(i, j) = value == 0.0 ? 1e-9 : value;
     }
   }
@@ -218,68 +158,11 @@ MeanLevel(const LayerLoops & lower, const LayerLoops & upper)
 }
 } // namespace
 
-std::vector<PieceOutline>
-InterpolateOutlines(const std::vector<Vector2> & plane,
-                    const std::vector<int> &     layerOfVertex,
-                    const std::vector<Section> & lower,
-                    const std::vector<Section> & upper)
-{
-  const auto                below = CollectLoops(plane, layerOfVertex, lower);
-  const auto                above = CollectLoops(plane, layerOfVertex, upper);
-  std::vector<PieceOutline> pieces;
-  for (const auto & [region, loopsBelow] : below)
-  {
-    const auto found = above.find(region);
-    if (found == above.end())
-    {
-      continue;
-    }
-    const double spacing =
-      (loopsBelow.length + found->second.length) / static_cast<double>(loopsBelow.points + found->second.points);
-    for (const Polygon & level : MeanLevel(loopsBelow, found->second))
-    {
-      const double area = SignedArea(level);
-      if (std::abs(area) < spacing * spacing)
-      {
-        continue;
-      }
-      PieceOutline::Loop loop{ ResampleClosed(level, spacing), loopsBelow.layer, region, 0 };
-      if (loop.layer == 0 && area > 0)
-      {
-        pieces.emplace_back();
-        pieces.back().loops.push_back(std::move(loop));
-        continue;
-      }
-      for (PieceOutline & piece : pieces)
-      {
-        if (!PointInPolygon(loop.points.front(), piece.loops.back().points))
-        {
-          continue;
-        }
-        if (area < 0 && loop.layer == 0 && piece.hole.empty())
-        {
-          std::reverse(loop.points.begin(), loop.points.end());
-          piece.hole = loop.points;
-        }
-        else if (area > 0 && piece.hole.empty() && piece.loops.back().region < region)
-        {
-          piece.loops.push_back(std::move(loop));
-        }
-        break;
-      }
-    }
-  }
-  return pieces;
-}
-
 std::vector<Vector2>
 HalfwayLoop(const std::vector<Vector2> & outer, const std::vector<Vector2> & hole)
 {
-  LayerLoops a, b;
-  a.loops = { outer };
-  b.loops = { hole };
   Polygon loop;
-  for (const Polygon & level : MeanLevel(a, b))
+  for (const Polygon & level : MeanLevel(outer, hole))
   {
     if (SignedArea(level) > 0 && PointInPolygon(hole.front(), level))
     {

@@ -1,0 +1,492 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSlabFilling.h"
+
+#include "boneConstrainedTriangulation.h"
+#include "bonePlanarOverlay.h"
+#include "bonePredicates.h"
+#include "boneSteinerCollapse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+namespace bone
+{
+namespace tiling
+{
+namespace
+{
+constexpr int    Corners = 4;
+constexpr int    OverlayTries = 6;
+constexpr double Shift = 1e-5; // mm, parts vertices of the two slices that lie over each other
+
+/** The triangulation of a slice and of what is outside the bone. */
+struct Side
+{
+  BoxTriangulation box;
+  std::vector<int> poolId; ///< of each vertex; -1 for the box
+  std::vector<int> region; ///< of each triangle; 0 outside
+  std::vector<int> group;  ///< of each triangle
+};
+
+struct Bounds
+{
+  Vector2 low, high;
+};
+
+Bounds
+BoundsOf(const VertexPool & pool, const std::vector<Section> & lower, const std::vector<Section> & upper)
+{
+  Bounds bounds{ Vector2::Constant(std::numeric_limits<double>::max()),
+                 Vector2::Constant(std::numeric_limits<double>::lowest()) };
+  for (const auto * sections : { &lower, &upper })
+  {
+    for (const Section & section : *sections)
+    {
+      for (int v : section.walks[0])
+      {
+        bounds.low = bounds.low.cwiseMin(pool.plane[v]);
+        bounds.high = bounds.high.cwiseMax(pool.plane[v]);
+      }
+    }
+  }
+  const double margin = 0.2 * (bounds.high - bounds.low).norm() + 1.0;
+  bounds.low.array() -= margin;
+  bounds.high.array() += margin;
+  return bounds;
+}
+
+Side
+MakeSide(const VertexPool &           pool,
+         const std::vector<Section> & sections,
+         const std::vector<int> &     groupOf,
+         const Bounds &               bounds)
+{
+  Side                     side;
+  ConstrainedTriangulation outside(bounds.low, bounds.high);
+  std::map<int, int>       local;
+  side.poolId.assign(Corners, -1);
+  for (const Section & section : sections)
+  {
+    std::vector<const Walk *> loops{ &section.walks[0] };
+    for (const Walk & hole : section.holes)
+    {
+      loops.push_back(&hole);
+    }
+    for (const Walk * loop : loops)
+    {
+      for (int v : *loop)
+      {
+        const int id = outside.Insert(pool.plane[v]);
+        if (id != static_cast<int>(side.poolId.size()))
+        {
+          throw std::runtime_error("contours touch");
+        }
+        local[v] = id;
+        side.poolId.push_back(v);
+      }
+    }
+    for (const Walk * loop : loops)
+    {
+      for (std::size_t i = 0; i < loop->size(); ++i)
+      {
+        outside.Constrain(local[(*loop)[i]], local[(*loop)[(i + 1) % loop->size()]]);
+      }
+    }
+  }
+  side.box.points = outside.GetPoints();
+  const std::vector<char> inside = outside.Inside();
+  for (std::size_t t = 0; t < inside.size(); ++t)
+  {
+    if (!inside[t])
+    {
+      side.box.triangles.push_back(outside.GetTriangles()[t].vertices);
+      side.region.push_back(0);
+      side.group.push_back(-1);
+    }
+  }
+  for (std::size_t s = 0; s < sections.size(); ++s)
+  {
+    for (const PlanarTriangle & triangle : SectionTriangles(sections[s]))
+    {
+      std::array<int, 3> vertices;
+      for (int i = 0; i < 3; ++i)
+      {
+        const int  v = triangle.vertices[i];
+        const auto added = local.emplace(v, static_cast<int>(side.poolId.size()));
+        if (added.second)
+        {
+          side.poolId.push_back(v);
+          side.box.points.push_back(pool.plane[v]);
+        }
+        vertices[i] = added.first->second;
+      }
+      side.box.triangles.push_back(vertices);
+      side.region.push_back(triangle.region);
+      side.group.push_back(groupOf[s]);
+    }
+  }
+  return side;
+}
+
+PlanarOverlay
+OverlaySides(const Side & lower, const Side & upper)
+{
+  for (int attempt = 1;; ++attempt)
+  {
+    BoxTriangulation moved = upper.box;
+    for (std::size_t v = Corners; v < moved.points.size(); ++v)
+    {
+      // No two vertices by the same amount, lest edges of both slices stay collinear.
+      const double angle = 2.399963 * static_cast<double>(v) * attempt;
+      moved.points[v] += Shift * attempt * Vector2(1.0 + 0.3 * std::cos(angle), 0.618 + 0.3 * std::sin(angle));
+    }
+    try
+    {
+      return Overlay(lower.box, moved);
+    }
+    catch (const std::runtime_error &)
+    {
+      if (attempt >= OverlayTries)
+      {
+        throw;
+      }
+    }
+  }
+}
+
+/** Regions over the height of the slab, from the lower slice to the upper one, of a triangle of the overlay. */
+using Column = std::vector<int>;
+
+/** One step of regions between neighbours at most: from `from` down to `to` within `steps` steps, staying bone as long
+ * as it can. */
+void
+AppendDescent(int from, int to, int steps, Column & column)
+{
+  for (int i = 1; i <= steps; ++i)
+  {
+    column.push_back(i == steps ? to : std::max({ to, from - i, from > 0 ? 1 : 0 }));
+  }
+}
+
+Column
+MakeColumn(int lower, int upper, bool together, int steps, bool parted)
+{
+  Column column{ lower };
+  if (parted)
+  {
+    const int between = together ? std::min(lower, upper) : 0;
+    AppendDescent(lower, between, steps, column);
+    Column down{ upper };
+    AppendDescent(upper, between, steps, down);
+    column.insert(column.end(), down.rbegin() + 1, down.rend());
+  }
+  else if (lower >= upper)
+  {
+    AppendDescent(lower, upper, steps, column);
+  }
+  else
+  {
+    Column down{ upper };
+    AppendDescent(upper, lower, steps, down);
+    column.assign(down.rbegin(), down.rend());
+  }
+  return column;
+}
+
+class SlabFiller
+{
+public:
+  SlabFiller(const ContourStack & stack, const Side & lower, const Side & upper, int slice, VertexPool & pool)
+    : m_Stack(stack)
+    , m_Sides{ &lower, &upper }
+    , m_Slice(slice)
+    , m_Pool(pool)
+    , m_Overlay(OverlaySides(lower, upper))
+  {}
+
+  void
+  Run(std::size_t               groups,
+      const std::vector<char> & connected,
+      double                    low,
+      double                    high,
+      std::vector<TiledTetra> & tetrahedra)
+  {
+    CheckOverlaps(groups, connected);
+    MakeColumns();
+    MakePoints(low, high);
+    FillPrisms();
+    FillMiddle();
+    Append(CollapseSteinerPoints(m_Mesh, m_FirstSteiner), tetrahedra);
+  }
+
+private:
+  void
+  CheckOverlaps(std::size_t groups, const std::vector<char> & connected) const
+  {
+    std::vector<double> area(groups, 0.0);
+    for (const auto & t : m_Overlay.triangles)
+    {
+      const int g = m_Sides[0]->group[t.first];
+      if (g >= 0 && g == m_Sides[1]->group[t.second])
+      {
+        const auto &  p = m_Overlay.points;
+        const Vector2 d = p[t.vertices[1]] - p[t.vertices[0]], e = p[t.vertices[2]] - p[t.vertices[0]];
+        area[g] += 0.5 * (d.x() * e.y() - d.y() * e.x());
+      }
+    }
+    for (std::size_t g = 0; g < groups; ++g)
+    {
+      if (connected[g] && !(area[g] > 0))
+      {
+        throw std::runtime_error("pieces that belong together do not overlap");
+      }
+    }
+  }
+
+  void
+  MakeColumns()
+  {
+    int  jump = 1;
+    bool parted = false;
+    for (const auto & t : m_Overlay.triangles)
+    {
+      const int a = m_Sides[0]->region[t.first], b = m_Sides[1]->region[t.second];
+      jump = std::max(jump, std::abs(a - b));
+      parted = parted || (a > 0 && b > 0 && m_Sides[0]->group[t.first] != m_Sides[1]->group[t.second]);
+    }
+    if (parted)
+    {
+      // Regions end before the bone between pieces does.
+      for (const auto & t : m_Overlay.triangles)
+      {
+        jump = std::max({ jump, m_Sides[0]->region[t.first], m_Sides[1]->region[t.second] });
+      }
+    }
+    for (const auto & t : m_Overlay.triangles)
+    {
+      m_Columns.push_back(MakeColumn(m_Sides[0]->region[t.first],
+                                     m_Sides[1]->region[t.second],
+                                     m_Sides[0]->group[t.first] == m_Sides[1]->group[t.second],
+                                     jump,
+                                     parted));
+    }
+    m_Planes = static_cast<int>(m_Columns.front().size()) - 1;
+  }
+
+  void
+  MakePoints(double low, double high)
+  {
+    for (int s = 0; s < 2; ++s)
+    {
+      m_First[s] = static_cast<IdType>(m_Mesh.points.size());
+      for (std::size_t v = 0; v < m_Sides[s]->poolId.size(); ++v)
+      {
+        const int id = m_Sides[s]->poolId[v];
+        m_Mesh.points.push_back(id >= 0 ? m_Pool.space[id]
+                                        : m_Stack.FromPlane(m_Sides[s]->box.points[v], s == 0 ? low : high));
+      }
+    }
+    m_FirstSteiner = static_cast<IdType>(m_Mesh.points.size());
+    for (int plane = 0; plane < m_Planes; ++plane)
+    {
+      const double share = (plane + 1.0) / (m_Planes + 1.0);
+      for (const Vector2 & q : m_Overlay.points)
+      {
+        m_Mesh.points.push_back(m_Stack.FromPlane(q, (1 - share) * low + share * high));
+      }
+    }
+  }
+
+  IdType
+  Steiner(int plane, int v) const
+  {
+    return m_FirstSteiner + static_cast<IdType>(plane) * static_cast<IdType>(m_Overlay.points.size()) + v;
+  }
+
+  void
+  AddCell(IdType a, IdType b, IdType c, IdType d, bool mirrored, int region)
+  {
+    m_Mesh.tetrahedra.push_back(mirrored ? Id4{ { a, b, d, c } } : Id4{ { a, b, c, d } });
+    m_Mesh.region.push_back(region);
+  }
+
+  /** The prisms between the slices and the overlay next to them. */
+  void
+  FillPrisms()
+  {
+    for (int s = 0; s < 2; ++s)
+    {
+      const bool mirrored = s == 1;
+      const int  plane = s == 0 ? 0 : m_Planes - 1;
+      const auto rotated = [&](int t) {
+        std::array<int, 3> v = m_Sides[s]->box.triangles[t];
+        std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
+        return v;
+      };
+      for (const auto & t : m_Overlay.triangles)
+      {
+        const int owner = s == 0 ? t.first : t.second;
+        AddCell(m_First[s] + rotated(owner)[0],
+                Steiner(plane, t.vertices[0]),
+                Steiner(plane, t.vertices[1]),
+                Steiner(plane, t.vertices[2]),
+                mirrored,
+                m_Sides[s]->region[owner]);
+      }
+      for (std::size_t t = 0; t < m_Sides[s]->box.triangles.size(); ++t)
+      {
+        FillSideOpposite(s, plane, rotated(static_cast<int>(t)), m_Sides[s]->region[t]);
+      }
+    }
+  }
+
+  /** The cells of a prism at the side opposite its smallest vertex: a fan about the smaller end of that side's edge. */
+  void
+  FillSideOpposite(int s, int plane, const std::array<int, 3> & v, int region)
+  {
+    const bool       mirrored = s == 1;
+    const int        b = v[1], c = v[2];
+    std::vector<int> chain = m_Overlay.chains[s].at({ { std::min(b, c), std::max(b, c) } });
+    if (b > c)
+    {
+      std::reverse(chain.begin(), chain.end()); // from b to c now
+    }
+    const IdType apex = m_First[s] + v[0], fan = m_First[s] + std::min(b, c);
+    for (std::size_t i = chain.size() - 1; i > 0; --i)
+    {
+      AddCell(apex, fan, Steiner(plane, chain[i]), Steiner(plane, chain[i - 1]), mirrored, region);
+    }
+    if (fan == m_First[s] + b)
+    {
+      AddCell(apex, fan, m_First[s] + c, Steiner(plane, chain.back()), mirrored, region);
+    }
+    else
+    {
+      AddCell(apex, fan, Steiner(plane, chain.front()), m_First[s] + b, mirrored, region);
+    }
+  }
+
+  /** Prisms between the copies of the overlay. */
+  void
+  FillMiddle()
+  {
+    for (int plane = 0; plane + 1 < m_Planes; ++plane)
+    {
+      for (std::size_t t = 0; t < m_Overlay.triangles.size(); ++t)
+      {
+        auto v = m_Overlay.triangles[t].vertices;
+        std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
+        const int    region = m_Columns[t][plane + 1];
+        const IdType low[3] = { Steiner(plane, v[0]), Steiner(plane, v[1]), Steiner(plane, v[2]) };
+        const IdType high[3] = { Steiner(plane + 1, v[0]), Steiner(plane + 1, v[1]), Steiner(plane + 1, v[2]) };
+        AddCell(low[0], high[0], high[1], high[2], false, region);
+        if (v[1] < v[2])
+        {
+          AddCell(low[0], low[1], low[2], high[2], false, region);
+          AddCell(low[0], low[1], high[2], high[1], false, region);
+        }
+        else
+        {
+          AddCell(low[0], low[1], low[2], high[1], false, region);
+          AddCell(low[0], low[2], high[2], high[1], false, region);
+        }
+      }
+    }
+  }
+
+  /** The bone among the cells; vertices in between get the layer that they bound. */
+  void
+  Append(const MeshArrays & filled, std::vector<TiledTetra> & tetrahedra)
+  {
+    std::vector<int> least(filled.points.size(), std::numeric_limits<int>::max());
+    std::vector<int> most(filled.points.size(), 0);
+    for (std::size_t t = 0; t < filled.tetrahedra.size(); ++t)
+    {
+      for (IdType v : filled.tetrahedra[t])
+      {
+        least[v] = std::min(least[v], filled.region[t]);
+        most[v] = std::max(most[v], filled.region[t]);
+      }
+    }
+    std::vector<int> id(filled.points.size(), -1);
+    for (std::size_t t = 0; t < filled.tetrahedra.size(); ++t)
+    {
+      if (filled.region[t] == 0)
+      {
+        continue;
+      }
+      TiledTetra cell;
+      cell.region = filled.region[t];
+      for (int i = 0; i < 4; ++i)
+      {
+        const IdType v = filled.tetrahedra[t][i];
+        if (id[v] < 0)
+        {
+          if (v < m_First[1])
+          {
+            id[v] = m_Sides[0]->poolId[v];
+          }
+          else if (v < m_FirstSteiner)
+          {
+            id[v] = m_Sides[1]->poolId[v - m_First[1]];
+          }
+          else
+          {
+            id[v] = m_Pool.Add(m_Stack.ToPlane(filled.points[v]), filled.points[v], least[v], m_Slice);
+          }
+        }
+        cell.vertices[i] = id[v];
+      }
+      tetrahedra.push_back(cell);
+    }
+  }
+
+  const ContourStack & m_Stack;
+  const Side *         m_Sides[2];
+  int                  m_Slice;
+  VertexPool &         m_Pool;
+  PlanarOverlay        m_Overlay;
+  std::vector<Column>  m_Columns;
+  int                  m_Planes{ 1 };
+  MeshArrays           m_Mesh;
+  IdType               m_First[2];
+  IdType               m_FirstSteiner{ 0 };
+};
+} // namespace
+
+void
+FillSlab(const ContourStack &         stack,
+         const std::vector<Section> & lower,
+         const std::vector<Section> & upper,
+         const std::vector<Group> &   groups,
+         double                       lowerHeight,
+         double                       upperHeight,
+         VertexPool &                 pool,
+         std::vector<TiledTetra> &    tetrahedra)
+{
+  std::vector<int>  lowerGroup(lower.size(), -1), upperGroup(upper.size(), -1);
+  std::vector<char> connected;
+  for (const Group & group : groups)
+  {
+    for (int i : group.lower)
+    {
+      lowerGroup[i] = static_cast<int>(connected.size());
+    }
+    for (int i : group.upper)
+    {
+      upperGroup[i] = static_cast<int>(connected.size());
+    }
+    connected.push_back(!group.lower.empty() && !group.upper.empty());
+  }
+  const Bounds bounds = BoundsOf(pool, lower, upper);
+  const Side   below = MakeSide(pool, lower, lowerGroup, bounds), above = MakeSide(pool, upper, upperGroup, bounds);
+  SlabFiller   filler(stack, below, above, (lower.empty() ? upper : lower).front().slice, pool);
+  filler.Run(groups.size(), connected, lowerHeight, upperHeight, tetrahedra);
+}
+} // namespace tiling
+} // namespace bone

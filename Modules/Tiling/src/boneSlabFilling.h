@@ -1,0 +1,43 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSlabFilling_h
+#define boneSlabFilling_h
+
+#include "boneContourStack.h"
+#include "boneRingKnit.h"
+#include "boneSectionBuilder.h"
+
+namespace bone
+{
+namespace tiling
+{
+/** \brief Fills the space between all sections of two slices, whatever branches, begins or ends there.
+ *
+ * 1. Each slice's triangulation is completed to one of a box by a constrained Delaunay triangulation of what is outside
+ *    the bone, and the two are overlaid (\ref PlanarOverlay).
+ * 2. The overlay, placed between the slices, parts the slab: a triangle of a slice and the overlay's triangles in it
+ *    span a convex prism, which is filled with tetrahedra from its smallest vertex. They take the region of the slice's
+ *    triangle. Where regions lie on top of each other that may not touch (trabecular bone below nothing), or pieces
+ * that do not belong together, further layers of prisms with the regions in between part them. Every step is a terrace
+ *    now; the mesh is valid, and every interface a 2-manifold, by construction.
+ * 3. The vertices in between are collapsed onto those of the slices wherever orientation (exact) and the link condition
+ *    for all regions, outside included, allow: terraces become slopes between the contours. As outside is filled with
+ *    tetrahedra too, no surface can pass through another.
+ *
+ * Vertices that could not be collapsed stay. The tetrahedra of the bone are added to `tetrahedra`, their vertices to
+ * `pool`. Throws std::runtime_error where a group of pieces with members on both slices would fall apart because they
+ * do not overlap. */
+void
+FillSlab(const ContourStack &         stack,
+         const std::vector<Section> & lower,
+         const std::vector<Section> & upper,
+         const std::vector<Group> &   groups,
+         double                       lowerHeight,
+         double                       upperHeight,
+         VertexPool &                 pool,
+         std::vector<TiledTetra> &    tetrahedra);
+} // namespace tiling
+} // namespace bone
+
+#endif
