@@ -22,6 +22,7 @@ struct FollowParameters
   double valleyDepth{ 0.2 };  ///< a contact of less mean depth, as a share of its sides' height, is bone throughout
   double contactWidth{ 4.0 }; ///< and joins two pieces where it is at least so long
   double contactArea{ 8.0 };  ///< and such contact exceeds that with a valley, along the bone so far, by that area
+  double suddenArea{ 150.0 };   ///< changes of a slice's area above it and by half are reported, mm^2
   double lookAhead{ 6.0 };    ///< how far beyond an end bone is looked for, to report a gap
 };
 
@@ -47,7 +48,8 @@ public:
 
   /** Replaces the pieces of all sections but the drawn ones (those with pieces) by the outlines of the bone there,
    * which are accurate to about a pixel. `spacing`: slices further apart than that (mm) are followed on planes between
-   * them too. Returns what happened, a line or none for each section. */
+   * them too. Returns what happened at each section, events separated by
+   * semicolons. */
   std::vector<std::string>
   Follow(std::vector<BoneSection> & sections, double spacing) const;
 

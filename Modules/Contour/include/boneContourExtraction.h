@@ -31,7 +31,7 @@ struct SliceReport
   bool        converged{ true }; ///< all of them
   double      energy{ 0.0 };     ///< internal, summed
   double      support{ 1.0 };    ///< least share of a contour's points that found an edge
-  std::string events;            ///< "contour ends", "splits", ... ; empty: nothing special
+  std::string events;            ///< what happened, separated by semicolons; empty: nothing special
 };
 
 /** What happened on all slices, and what a person should know. */

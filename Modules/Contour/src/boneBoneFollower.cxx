@@ -28,7 +28,7 @@ struct FinePlane
 void
 AddEvent(std::string & events, const std::string & event)
 {
-  events += (events.empty() ? "" : ", ") + event;
+  events += (events.empty() ? "" : "; ") + event;
 }
 
 // One following: bodies, and what each section's pixels belong to.
@@ -271,7 +271,7 @@ private:
     }
     if (ends)
     {
-      AddEvent(plane.event, "a piece ends at a joint, what lies beyond is another bone");
+      AddEvent(plane.event, "a piece ends at a joint");
     }
     if (touches)
     {
@@ -285,11 +285,11 @@ private:
     const auto   ours = [this](int body) { return this->IsOurs(body); };
     const double a = before.Area(ours);
     const double b = now.Area(ours);
-    if (b > 0.0 && (b > 1.5 * a || b < 0.6 * a))
+    if (b > 0.0 && std::abs(b - a) > m_P.suddenArea && (b > 1.5 * a || b < 0.6 * a))
     {
       std::ostringstream text;
       text.precision(2);
-      text << "area changes suddenly, by a factor of " << b / a;
+      text << "its area changes suddenly, by a factor of " << b / a;
       AddEvent(plane.event, text.str());
     }
   }

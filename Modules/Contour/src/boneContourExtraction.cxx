@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 
 namespace bone
@@ -63,7 +64,7 @@ AddResult(const SnakeResult & snake, SliceReport & report)
 void
 AddEvent(SliceReport & report, const std::string & event)
 {
-  report.events += (report.events.empty() ? "" : ", ") + event;
+  report.events += (report.events.empty() ? "" : "; ") + event;
 }
 
 // The contours of the union of the loops' insides (each loop by itself, holes taken away).
@@ -136,6 +137,51 @@ private:
   Vector2                      m_Pixel;
   const ExtractionParameters & m_Parameters;
 };
+
+// What a person should look at, by event, with the heights between which it happened.
+std::vector<std::string>
+SummariseEvents(const std::vector<SliceReport> & slices)
+{
+  struct Range
+  {
+    double low;
+    double high;
+    int    count;
+  };
+  const std::vector<std::string> usual = { "the bone ends", "another piece joins" };
+  std::map<std::string, Range>   ranges;
+  for (const SliceReport & slice : slices)
+  {
+    std::istringstream events(slice.events);
+    for (std::string event; std::getline(events >> std::ws, event, ';');)
+    {
+      if (std::find(usual.begin(), usual.end(), event) == usual.end())
+      {
+        const auto found = ranges.insert({ event.substr(0, event.find(", by a")), { slice.height, slice.height, 0 } });
+        found.first->second.high = slice.height;
+        ++found.first->second.count;
+      }
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto & item : ranges)
+  {
+    std::ostringstream line;
+    line << "Look at the contours ";
+    if (item.second.count > 1)
+    {
+      line << "between " << item.second.low << " and " << item.second.high << " mm (" << item.second.count
+           << " slices)";
+    }
+    else
+    {
+      line << "at " << item.second.low << " mm";
+    }
+    line << ": " << item.first << '.';
+    lines.push_back(line.str());
+  }
+  return lines;
+}
 
 std::vector<BoneSection>
 EvenSections(double first, double step, double last, double slack)
@@ -263,6 +309,8 @@ PropagateSections(std::vector<BoneSection> &   sections,
     report.slices[k].events = events[k];
     snakes.Settle(sections[k], drawn[k] != 0, report.slices[k]);
   });
+  const std::vector<std::string> lines = SummariseEvents(report.slices);
+  report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
 }
 
 void
