@@ -33,7 +33,8 @@ MeshOperationName(MeshOperation operation);
  * \brief A tetrahedral mesh whose cells may be replaced: what flips and collapses work on.
  *
  * Cells keep their face neighbours, the surface of each face, and each point knows the cells around it. Removed cells
- * stay as dead slots until they are reused or Compact() is called. All orders are determined by the input alone. */
+ * stay as dead slots until they are reused or Compact() is called. All orders are determined by the input alone. Not to
+ * be used by several threads at once. */
 class TetraComplex
 {
 public:
@@ -164,6 +165,8 @@ public:
   Compact(const MeshArrays & source, std::vector<IdType> & pointId, std::vector<IdType> & cellSlot) const;
 
 private:
+  bool
+  LinksMeetInEdgeLink(IdType v, IdType w) const;
   void
   EraseFromStar(IdType p, IdType t);
   void
@@ -176,6 +179,7 @@ private:
   SurfaceComplex                   m_Surfaces;
   std::vector<std::vector<IdType>> m_Star;
   IdType                           m_AliveCount{ 0 };
+  mutable std::vector<char>        m_Mark; ///< of points, for LinksMeetInEdgeLink; else 0
 };
 } // namespace bone
 

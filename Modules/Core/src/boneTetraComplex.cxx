@@ -342,12 +342,49 @@ TetraComplex::CanCollapse(IdType v, IdType w) const
       return MeshOperation::Topology;
     }
   }
-  const Link a(*this, v, w), b(*this, w, v);
-  if (!CommonIsWithin(a.vertices, b.vertices, a.edgeVertices) || !CommonIsWithin(a.edges, b.edges, a.edgeEdges))
+  return LinksMeetInEdgeLink(v, w) ? MeshOperation::Done : MeshOperation::Topology;
+}
+
+bool
+TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
+{
+  // Neighbours of v are marked, those that w shares by the edge's link with 2. The star of w may be large.
+  const Link link(*this, v, w);
+  m_Mark.resize(m_Points.size(), 0);
+  for (IdType p : link.vertices)
   {
-    return MeshOperation::Topology;
+    m_Mark[p] = 1;
   }
-  return MeshOperation::Done;
+  for (IdType p : link.edgeVertices)
+  {
+    m_Mark[p] = 2;
+  }
+  const auto sharedEdge = [&](IdType p, IdType q) {
+    const Pair edge = Ordered(p, q);
+    return std::binary_search(link.edges.begin(), link.edges.end(), edge) &&
+           !std::binary_search(link.edgeEdges.begin(), link.edgeEdges.end(), edge);
+  };
+  bool meet = true;
+  for (std::size_t k = 0; k < m_Star[w].size() && meet; ++k)
+  {
+    IdType shared[3];
+    int    n = 0;
+    for (IdType p : m_Cells[m_Star[w][k]])
+    {
+      if (p != v && p != w && m_Mark[p] > 0)
+      {
+        meet = meet && m_Mark[p] == 2;
+        shared[n++] = p;
+      }
+    }
+    meet = meet && (n < 2 || !sharedEdge(shared[0], shared[1])) &&
+           (n < 3 || (!sharedEdge(shared[0], shared[2]) && !sharedEdge(shared[1], shared[2])));
+  }
+  for (IdType p : link.vertices)
+  {
+    m_Mark[p] = 0;
+  }
+  return meet;
 }
 
 std::vector<IdType>

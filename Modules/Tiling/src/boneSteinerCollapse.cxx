@@ -4,11 +4,11 @@
 #include "boneSteinerCollapse.h"
 
 #include "bonePredicates.h"
-#include "boneQualityMeasures.h"
 #include "boneTetraComplex.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 namespace bone
@@ -17,10 +17,21 @@ namespace tiling
 {
 namespace
 {
-constexpr double GoodAngle = 25.0 / 57.29577951308232;
-constexpr double FirstFloor = 4.0 / 57.29577951308232; ///< smallest angle of bone that the first round may make
+constexpr double GoodShape = 0.4;
+constexpr double FirstFloor = 0.03; ///< worst shape of bone that the first round may make
 constexpr double ShapeWeight = 3.0;
 constexpr double SteinerTargetFactor = 1.5;
+
+/** Volume over the cube of the root mean square edge, 1 for a regular tetrahedron; negative where inverted. */
+double
+Shape(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+{
+  const Vector3 x = b - a, y = c - a, z = d - a;
+  const double  square = (x.squaredNorm() + y.squaredNorm() + z.squaredNorm() + (c - b).squaredNorm() +
+                         (d - b).squaredNorm() + (d - c).squaredNorm()) /
+                        6.0;
+  return 1.4142135623730951 * x.cross(y).dot(z) / (square * std::sqrt(square));
+}
 
 class SteinerCollapser
 {
@@ -34,11 +45,11 @@ public:
     , m_Cost(mesh.points.size(), 0.0)
   {}
 
-  /** Collapses until nothing more is allowed with no smaller angle than `floor` (rad). */
+  /** Collapses until nothing more is allowed that makes no worse shape than `floor`, or than there was. */
   void
   Run(double floor)
   {
-    m_Limit = std::cos(floor);
+    m_Floor = floor;
     const IdType points = static_cast<IdType>(m_Complex.Points().size());
     std::fill(m_Dirty.begin(), m_Dirty.end(), 1);
     for (bool any = true; any;)
@@ -59,17 +70,13 @@ public:
         {
           continue;
         }
-        if (m_Dirty[v])
+        if (m_Dirty[v] && !StillAllowed(v))
         {
-          if (!Update(v))
-          {
-            continue;
-          }
-          if (!m_Queue.empty() && m_Cost[v] > m_Queue.top().first)
+          if (Update(v))
           {
             m_Queue.push({ m_Cost[v], v });
-            continue;
           }
+          continue;
         }
         Commit(v, m_Target[v]);
         any = true;
@@ -101,26 +108,53 @@ private:
   Update(IdType v)
   {
     m_Dirty[v] = 0;
+    const auto & p = m_Complex.Points();
     m_Rated.clear();
     for (IdType w : Targets(v))
     {
-      double cost = 0.0;
-      if (Rate(v, w, cost))
-      {
-        m_Rated.emplace_back(cost, w);
-      }
+      m_Rated.emplace_back((p[v] - p[w]).norm() * (w < m_First ? 1.0 : SteinerTargetFactor), w);
     }
     std::sort(m_Rated.begin(), m_Rated.end());
-    for (const Entry & candidate : m_Rated)
+    const double floor = std::min(m_Floor, WorstShape(v));
+    m_Target[v] = -1;
+    m_Cost[v] = std::numeric_limits<double>::infinity();
+    for (const auto & [least, w] : m_Rated)
     {
-      if (m_Complex.CanCollapse(v, candidate.second) == MeshOperation::Done && StaysPositive(v, candidate.second))
+      if (least >= m_Cost[v])
       {
-        m_Cost[v] = candidate.first;
-        m_Target[v] = candidate.second;
-        return true;
+        break;
+      }
+      const double shape = ShapeAfter(v, w, floor);
+      if (!(shape >= floor))
+      {
+        continue;
+      }
+      const double lack = std::max(0.0, 1.0 - shape / GoodShape);
+      const double cost = least * (1.0 + ShapeWeight * lack * lack);
+      if (cost < m_Cost[v] && m_Complex.CanCollapse(v, w) == MeshOperation::Done && StaysPositive(v, w))
+      {
+        m_Cost[v] = cost;
+        m_Target[v] = w;
       }
     }
-    return false;
+    return m_Target[v] >= 0;
+  }
+
+  /** Whether v may still go where it was to go before something around it changed. */
+  bool
+  StillAllowed(IdType v) const
+  {
+    const IdType w = m_Target[v];
+    const double floor = std::min(m_Floor, WorstShape(v));
+    return w >= 0 && !m_Gone[w] && AreJoined(v, w) && ShapeAfter(v, w, floor) >= floor &&
+           m_Complex.CanCollapse(v, w) == MeshOperation::Done && StaysPositive(v, w);
+  }
+
+  bool
+  AreJoined(IdType v, IdType w) const
+  {
+    const auto & star = m_Complex.Star(v);
+    return std::any_of(star.begin(), star.end(), [&](IdType t) { return m_Complex.Has(t, w); });
   }
 
   std::vector<IdType>
@@ -147,40 +181,51 @@ private:
     }
   }
 
-  bool
-  Rate(IdType v, IdType w, double & cost) const
+  /** The worst shape of the bone around v. */
+  double
+  WorstShape(IdType v) const
   {
     const auto & p = m_Complex.Points();
-    double       worst = -1.0, before = -1.0;
+    double       worst = 1.0;
     for (IdType t : m_Complex.Star(v))
     {
-      Id4        c = m_Complex.Cell(t);
-      const bool bone = m_Complex.Region(t) > 0;
-      if (bone)
+      const Id4 & c = m_Complex.Cell(t);
+      if (m_Complex.Region(t) > 0)
       {
-        before = std::max(before, LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
+        worst = std::min(worst, Shape(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
       }
+    }
+    return worst;
+  }
+
+  /** The worst shape of the bone around v when it lies at w; below `floor` as soon as something is below it. */
+  double
+  ShapeAfter(IdType v, IdType w, double floor) const
+  {
+    const auto & p = m_Complex.Points();
+    double       worst = 1.0;
+    for (IdType t : m_Complex.Star(v))
+    {
       if (m_Complex.Has(t, w))
       {
         continue;
       }
+      Id4 c = m_Complex.Cell(t);
       c[m_Complex.LocalIndex(t, v)] = w;
-      if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > 0))
+      if (m_Complex.Region(t) > 0)
       {
-        return false;
+        worst = std::min(worst, Shape(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
+        if (!(worst >= floor))
+        {
+          return worst;
+        }
       }
-      if (bone)
+      else if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > 0))
       {
-        worst = std::max(worst, LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
+        return -1.0;
       }
     }
-    if (worst > std::max(m_Limit, before))
-    {
-      return false;
-    }
-    const double shape = std::max(0.0, 1.0 - std::acos(worst) / GoodAngle);
-    cost = (p[v] - p[w]).norm() * (1.0 + ShapeWeight * shape * shape) * (w < m_First ? 1.0 : SteinerTargetFactor);
-    return true;
+    return worst;
   }
 
   bool
@@ -216,7 +261,7 @@ private:
 
   TetraComplex                                                        m_Complex;
   IdType                                                              m_First;
-  double                                                              m_Limit{ 1.0 };
+  double                                                              m_Floor{ 0.0 };
   std::vector<char>                                                   m_Dirty, m_Gone;
   std::vector<IdType>                                                 m_Target;
   std::vector<double>                                                 m_Cost;
