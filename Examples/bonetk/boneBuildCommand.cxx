@@ -52,7 +52,7 @@ ReadInput(const Options & options)
   constexpr double margin = 10.0;
   Input            input;
   input.ct = ReadCT(options.ct);
-  BoneInput bone = ReadBone(options.bone);
+  BoneInput bone = ReadBone(options.bone, options.axis);
   input.contours = bone.contours;
   if (bone.labels.IsNull())
   {

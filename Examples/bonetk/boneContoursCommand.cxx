@@ -5,11 +5,13 @@
 #include "boneOptions.h"
 
 #include "boneContourIO.h"
+#include "boneContourImage.h"
 #include "boneContourResampleFilter.h"
 #include "boneMedialAxisFilter.h"
 #include "boneSnakeContourFilter.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bone
 {
@@ -21,29 +23,78 @@ struct Options
   BoneOptions bone;
   double      sliceStep{ 0.0 };
   double      spacing{ 4.0 };
+  double      leastSpacing{ 0.0 };
+  double      tolerance{ 0.2 };
+  double      layerDistance{ 0.0 };
+  double      samples{ 0.0 };
+  double      tetrahedra{ 0.0 };
   int         axis{ 2 };
   int         layers{ 3 };
-  std::string output;
+  bool        refine{ false };
+  bool        keepSmall{ false };
+
+  std::vector<std::string> outputs;
 };
+
+bool
+IsContourFile(const std::string & path)
+{
+  const auto ends = [&path](const std::string & extension) {
+    return path.size() > extension.size() &&
+           path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
+  };
+  return ends(".vtp") || ends(".mrk.json");
+}
+
+/** The least distance between layers, which the pixel's size bounds below unless it was given. */
+double
+LayerDistance(const Options & options, const CTImage * ct)
+{
+  double pixel = 0.0;
+  for (int a = 0; a < 3; ++a)
+  {
+    pixel = a == options.axis ? pixel : std::max(pixel, ct->GetSpacing()[static_cast<unsigned int>(a)]);
+  }
+  return options.layerDistance > 0.0 ? options.layerDistance : std::max(0.8, pixel);
+}
 
 void
 Run(const Options & options, Session & session)
 {
   options.bone.Verify();
-  VerifyExtension(options.output, { ".vtp" });
-  const BoneInput bone = ReadBone(options.bone);
-  auto            snake = SnakeContourFilter<CTImage, ContourStack>::New();
-  snake->SetInput(ReadCT(options.ct));
+  for (const std::string & output : options.outputs)
+  {
+    if (!IsContourFile(output))
+    {
+      VerifyExtension(output, { ".vtp", ".mrk.json", ".nii", ".nii.gz", ".mha", ".mhd", ".nrrd" });
+    }
+  }
+  if (options.leastSpacing > options.spacing)
+  {
+    throw UsageError("--least-spacing is above --contour-spacing");
+  }
+  const BoneInput        bone = ReadBone(options.bone, options.axis);
+  const CTImage::Pointer ct = ReadCT(options.ct);
+  const double           distance = LayerDistance(options, ct);
+  auto                   snake = SnakeContourFilter<CTImage, ContourStack>::New();
+  snake->SetInput(ct);
   snake->SetLabelImage(bone.labels);
   snake->SetInitialContours(bone.contours);
   snake->SetLabel(options.bone.label);
   snake->SetAxis(static_cast<unsigned int>(options.axis));
   snake->SetSliceStep(options.sliceStep);
   snake->SetNumberOfLayers(options.layers);
+  snake->SetMinimumLayerDistance(distance);
+  snake->SetRefineLabelOutline(options.refine);
+  snake->SetKeepSmallPieces(options.keepSmall);
   auto resample = ContourResampleFilter<ContourStack>::New();
   resample->SetInput(snake->GetOutput());
   resample->SetMaximumSpacing(options.spacing);
-  resample->SetMinimumSpacing(options.spacing / 3.0);
+  resample->SetMinimumSpacing(options.leastSpacing > 0.0 ? options.leastSpacing : options.spacing / 3.0);
+  resample->SetTolerance(options.tolerance);
+  resample->SetMinimumLayerDistance(distance);
+  resample->SetTargetNumberOfSamples(static_cast<std::size_t>(std::llround(options.samples)));
+  resample->SetTargetNumberOfTetrahedra(static_cast<std::size_t>(std::llround(options.tetrahedra)));
   auto axes = MedialAxisFilter<ContourStack>::New();
   axes->SetInput(resample->GetOutput());
   session.Watch(snake, "contours");
@@ -54,7 +105,17 @@ Run(const Options & options, Session & session)
   {
     std::for_each(warnings.begin(), warnings.end(), [&session](const std::string & line) { session.Warn(line); });
   }
-  WriteContours(axes->GetOutput(), options.output);
+  for (const std::string & output : options.outputs)
+  {
+    if (IsContourFile(output))
+    {
+      WriteContours(axes->GetOutput(), output);
+    }
+    else
+    {
+      WriteImage(RasterizeContours(axes->GetOutput(), ct), output);
+    }
+  }
 }
 } // namespace
 
@@ -73,7 +134,34 @@ AddContoursCommand(CLI::App & app, Action & action)
   command
     ->add_option("--layers", options->layers, "1 periosteal, 2 with endosteal, 3 (default) with medullary contours")
     ->check(CLI::Range(1, 3).description(""));
-  command->add_option("-o,--output", options->output, "Contours to write (.vtp)")->required();
+  command
+    ->add_option("--least-spacing",
+                 options->leastSpacing,
+                 "Least distance of a contour's points in mm; default: a third of the largest")
+    ->check(Positive());
+  command
+    ->add_option("--tolerance", options->tolerance, "Distance of the fitted curves to the contours in mm; default 0.2")
+    ->check(Positive());
+  auto * samples = command->add_option(
+    "--samples", options->samples, "Points of all contours, about; the spacings are scaled alike to give them");
+  samples->check(Between(100, 1e8));
+  command->add_option("--tetrahedra", options->tetrahedra, "The same for the tetrahedra that a tiling will have, about")
+    ->check(Between(500, 1e8))
+    ->excludes(samples);
+  command
+    ->add_option("--layer-distance",
+                 options->layerDistance,
+                 "Least distance between a contour and the next inside it in mm; default 0.8 or a pixel")
+    ->check(Positive());
+  command->add_flag("--refine", options->refine, "Move the label's outline to the edges of the CT, by a pixel at most");
+  command->add_flag(
+    "--keep-small", options->keepSmall, "Keep pieces and holes of a single slice, and bodies of little volume");
+  command
+    ->add_option("-o,--output",
+                 options->outputs,
+                 "What to write: contours (.vtp, .mrk.json) or a label map (.nii.gz, .mha, ...); may be given again")
+    ->required()
+    ->allow_extra_args(false);
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }
 } // namespace bone

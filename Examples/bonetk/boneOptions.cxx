@@ -53,11 +53,15 @@ Between(double lower, double upper)
 void
 BoneOptions::AddTo(CLI::App * command)
 {
-  auto * labelsOption = command->add_option("--labels", labels, "Label map on the CT's grid: where the bone is");
-  command->add_option("--label", label, "The bone's value in the label map; default: every value but 0")
-    ->needs(labelsOption)
+  command->add_option("--labels", labels, "Label map on the CT's grid: where the bone is");
+  command->add_option("--label", label, "The bone's value in label maps (--labels, --init); default: every value but 0")
     ->check(Between(-32768, 32767));
-  command->add_option("--init", init, "Initial contours (.vtp, or .mrk.json of 3D Slicer); may be given with --labels");
+  auto * initOption = command->add_option("--init",
+                                          init,
+                                          "Initial contours: .vtp, .mrk.json of 3D Slicer, DICOM structure set (.dcm), "
+                                          "or a label map of some slices; may be given with --labels");
+  command->add_option("--structure", structure, "The bone's name in a DICOM structure set; default: the only structure")
+    ->needs(initOption);
 }
 
 void
@@ -70,7 +74,7 @@ BoneOptions::Verify() const
 }
 
 BoneInput
-ReadBone(const BoneOptions & options)
+ReadBone(const BoneOptions & options, int axis)
 {
   BoneInput input;
   if (!options.labels.empty())
@@ -79,7 +83,7 @@ ReadBone(const BoneOptions & options)
   }
   if (!options.init.empty())
   {
-    input.contours = ReadContours(options.init);
+    input.contours = ReadContours(options.init, { options.structure, options.label, static_cast<unsigned int>(axis) });
   }
   return input;
 }

@@ -31,8 +31,9 @@ struct BoneOptions
   std::string labels;
   int         label{ 0 };
   std::string init;
+  std::string structure;
 
-  /** Adds --labels, --label and --init. */
+  /** Adds --labels, --label, --init and --structure. */
   void
   AddTo(CLI::App * command);
   /** Throws UsageError where neither labels nor contours were given. */
@@ -47,8 +48,9 @@ struct BoneInput
   ContourStack::Pointer contours;
 };
 
+/** `axis` is that of AddAxisOption. */
 BoneInput
-ReadBone(const BoneOptions & options);
+ReadBone(const BoneOptions & options, int axis);
 
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void

@@ -14,13 +14,14 @@ struct ExtractionParameters
 {
   SnakeParameters snake;
   LayerParameters layers;
-  double          edgeSmoothing{ 0.0 };   ///< Gaussian on the CT before edges are sought; 0: 0.7 pixel
-  double          minimumSlope{ 40.0 };   ///< of an edge, HU/mm
-  double          minimumArea{ 4.0 };     ///< of a contour
-  double          boneThreshold{ 150.0 }; ///< what never reaches it is no bone
-  double          refineDistance{ 0.0 };  ///< bound on the refinement of a label's outline
-  double          followStep{ 1.0 };      ///< slices further apart are followed on planes between them too
-  double          minimumVolume{ 60.0 };  ///< of a body apart from the rest
+  double          edgeSmoothing{ 0.0 };     ///< Gaussian on the CT before edges are sought; 0: 0.7 pixel
+  double          minimumSlope{ 40.0 };     ///< of an edge, HU/mm
+  double          minimumArea{ 4.0 };       ///< of a contour
+  double          boneThreshold{ 150.0 };   ///< what never reaches it is no bone
+  double          refineDistance{ 0.0 };    ///< bound on the refinement of a label's outline
+  double          followStep{ 1.0 };        ///< slices further apart are followed on planes between them too
+  double          minimumVolume{ 60.0 };    ///< of a body apart from the rest
+  bool            keepSmallPieces{ false }; ///< also what exists on one slice only, and smaller bodies
 };
 
 /** What happened on a slice. */

@@ -7,6 +7,8 @@
 #include "boneContourResampleFilter.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace bone
 {
@@ -25,18 +27,84 @@ ContourResampleFilter<TContourStack>::VerifyPreconditions() ITKv5_CONST
     itkExceptionMacro("MinimumSpacing (" << m_MinimumSpacing << ") is more than MaximumSpacing (" << m_MaximumSpacing
                                          << ").");
   }
+  if (m_TargetNumberOfSamples > 0 && m_TargetNumberOfTetrahedra > 0)
+  {
+    itkExceptionMacro("Both TargetNumberOfSamples and TargetNumberOfTetrahedra are set; one of them must be 0.");
+  }
+}
+
+template <typename TContourStack>
+void
+ContourResampleFilter<TContourStack>::SampleAll()
+{
+  m_SliceReports.assign(this->GetInput()->GetSlices().size(), SamplingReport{});
+  Superclass::GenerateData();
+}
+
+// The count goes about with 1 / scale: secant rule on the logarithms, with that slope at first.
+template <typename TContourStack>
+void
+ContourResampleFilter<TContourStack>::SampleForTarget()
+{
+  constexpr double tolerance = 0.02;
+  constexpr int    mostTrials = 8;
+  const bool       samples = m_TargetNumberOfSamples > 0;
+  const auto       target = static_cast<double>(samples ? m_TargetNumberOfSamples : m_TargetNumberOfTetrahedra);
+  double           bestScale = 1.0;
+  double           bestError = std::numeric_limits<double>::max();
+  double           lastScale = 0.0;
+  double           lastError = 0.0;
+  double           slope = -1.0;
+  for (int trial = 0; trial < mostTrials && bestError > tolerance; ++trial)
+  {
+    this->SampleAll();
+    const double count =
+      samples ? static_cast<double>(CountSamples(*this->GetOutput())) : EstimateTetrahedra(*this->GetOutput());
+    const double error = std::log(count / target);
+    if (std::abs(error) < bestError)
+    {
+      bestError = std::abs(error);
+      bestScale = m_SpacingScale;
+    }
+    const double scale = std::log(m_SpacingScale);
+    if (trial > 0 && std::abs(scale - lastScale) > 1e-6)
+    {
+      slope = std::clamp((error - lastError) / (scale - lastScale), -2.0, -0.3);
+    }
+    lastScale = scale;
+    lastError = error;
+    m_SpacingScale = std::exp(scale - error / slope);
+  }
+  m_SpacingScale = bestScale;
+  if (bestError > tolerance)
+  {
+    m_Warnings.push_back("The nearest to " + std::to_string(static_cast<std::size_t>(target)) +
+                         (samples ? " samples" : " tetrahedra") + " that was found is off by " +
+                         std::to_string(static_cast<int>(std::lround(100.0 * std::expm1(bestError)))) + " %.");
+    this->SampleAll();
+  }
 }
 
 template <typename TContourStack>
 void
 ContourResampleFilter<TContourStack>::GenerateData()
 {
-  m_SliceReports.assign(this->GetInput()->GetSlices().size(), SamplingReport{});
   m_Report = {};
   m_Warnings.clear();
-  Superclass::GenerateData();
+  m_SpacingScale = 1.0;
+  if (m_TargetNumberOfSamples > 0 || m_TargetNumberOfTetrahedra > 0)
+  {
+    this->SampleForTarget();
+  }
+  else
+  {
+    this->SampleAll();
+  }
   for (std::size_t k = 0; k < m_SliceReports.size(); ++k)
   {
+    m_Report.samples += m_SliceReports[k].samples;
+    m_Report.moved += m_SliceReports[k].moved;
+    m_Report.near += m_SliceReports[k].near;
     m_Report.refined += m_SliceReports[k].refined;
     m_Report.unfitted += m_SliceReports[k].unfitted;
     m_Report.largestError = std::max(m_Report.largestError, m_SliceReports[k].largestError);
@@ -44,6 +112,11 @@ ContourResampleFilter<TContourStack>::GenerateData()
     {
       m_Warnings.push_back("Slice " + std::to_string(k) + ": " + std::to_string(m_SliceReports[k].unfitted) +
                            " contours kept as given; a spline would cross another contour.");
+    }
+    if (m_SliceReports[k].near > 0)
+    {
+      m_Warnings.push_back("Slice " + std::to_string(k) + ": " + std::to_string(m_SliceReports[k].near) +
+                           " inner contours are nearer to the one around them than MinimumLayerDistance.");
     }
   }
 }
@@ -56,7 +129,8 @@ ContourResampleFilter<TContourStack>::MakeSlice(const TContourStack & input, std
   parameters.tolerance = m_Tolerance;
   parameters.minimumSpacing = m_MinimumSpacing;
   parameters.maximumSpacing = m_MaximumSpacing;
-  parameters.minimumDistance = 0.5 * m_MinimumLayerDistance;
+  parameters.minimumDistance = m_MinimumLayerDistance;
+  parameters.spacingScale = m_SpacingScale;
   parameters.thinLayerRatio = m_ThinLayerRatio;
   return SampleSlice(input.GetSlices()[k], input, parameters, m_SliceReports[k]);
 }
@@ -71,6 +145,9 @@ ContourResampleFilter<TContourStack>::PrintSelf(std::ostream & os, itk::Indent i
   os << indent << "MaximumSpacing: " << m_MaximumSpacing << '\n';
   os << indent << "MinimumLayerDistance: " << m_MinimumLayerDistance << '\n';
   os << indent << "ThinLayerRatio: " << m_ThinLayerRatio << '\n';
+  os << indent << "TargetNumberOfSamples: " << m_TargetNumberOfSamples << '\n';
+  os << indent << "TargetNumberOfTetrahedra: " << m_TargetNumberOfTetrahedra << '\n';
+  os << indent << "SpacingScale: " << m_SpacingScale << '\n';
 }
 } // namespace bone
 

@@ -15,13 +15,17 @@ struct SamplingParameters
   double tolerance{ 0.2 };       ///< of the spline to the contour's points, and of a chord to the spline
   double minimumSpacing{ 0.8 };  ///< between neighbouring samples
   double maximumSpacing{ 4.0 };  ///< between neighbouring samples
-  double minimumDistance{ 0.4 }; ///< between sampled contours, as far as those given keep it
+  double minimumDistance{ 0.8 }; ///< between a contour and the next inside it
   double thinLayerRatio{ 2.0 };  ///< spacing over the distance to the next layer, at most (but for minimumSpacing)
+  double spacingScale{ 1.0 };    ///< factor of every spacing, limits too
 };
 
 /** How a slice's contours came out. */
 struct SamplingReport
 {
+  int    samples{ 0 };        ///< on closed contours
+  int    moved{ 0 };          ///< samples moved off their spline to keep the minimum distance
+  int    near{ 0 };           ///< pairs of layers left nearer than the minimum distance, as they were given
   int    refined{ 0 };        ///< contours sampled more finely because they would have crossed or come too near
   int    unfitted{ 0 };       ///< contours kept as given: no spline could be had that stays clear of the others
   double largestError{ 0.0 }; ///< distance from a given point to its spline, mm
@@ -30,14 +34,24 @@ struct SamplingReport
 /** \brief Replaces the closed contours of a slice by samples of cubic B-splines fitted to them; axes are left out.
  *
  * Where the spline curves by k, samples lie sqrt(8 tolerance / k) apart, within the spacings' limits and the thin
- * layers'; the spacing changes by at most 0.3 per unit of length. Points lie on the spline. The result is simple and
- * disjoint (decided exactly).. Order,
- * ids, layers and orientation are kept. */
+ * layers'; the spacing changes by at most 0.3 per unit of length. Points lie on the spline, but where chords bring a
+ * contour nearer to the one around it (or to a hole beside it) than the minimum distance, the inner one is moved away.
+ * What still conflicts is fitted and sampled more finely, then kept as given. The result is simple and
+ * disjoint (decided exactly). Order, ids, layers and orientation are kept. */
 ContourSlice
 SampleSlice(const ContourSlice &       slice,
             const ContourStack &       frame,
             const SamplingParameters & parameters,
             SamplingReport &           report);
+
+/** Points of all closed contours. */
+std::size_t
+CountSamples(const ContourStack & stack);
+
+/** About how many tetrahedra a tiling of the stack has: a layer's ring of a slab has one for each point of its outer
+ * and its inner contour (or axis) on both slices, times a factor for those with two points on each slice. */
+double
+EstimateTetrahedra(const ContourStack & stack);
 } // namespace bone
 
 #endif

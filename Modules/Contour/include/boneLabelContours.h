@@ -13,7 +13,9 @@ namespace bone
  * enclose the label's area.
  *
  * Smoothing draws in what is thin, so the level is moved (by at most 0.35 of the grid's spacing) until the enclosed
- * area is that of the label. Contours of less than `minimumArea` (mm^2) are left out and counted in `dropped`. */
+ * area is that of the label. What is so small that its contour nearly vanishes, a voxel or two alone or a hole of that
+ * size, gets a level of its own. Contours that enclose less of the label (holes: of what is not) than `minimumArea`
+ * (mm^2) are left out and counted in `dropped`. */
 std::vector<BonePiece>
 ContoursOfLabel(const LabelField & label,
                 const PlaneGrid &  grid,

@@ -17,22 +17,34 @@ struct MedialAxisParameters
    * by more than this many times its clearance (a straight channel has infinity, the centre of a corner of 90 degrees
    * 0.59). */
   double significance{ 0.8 };
-  /** An axis whose whole length is less than this many times its largest clearance is a point. */
+  /** An axis without a cycle whose whole length is less than this many times its largest clearance is a point. */
   double roundness{ 1.0 };
 };
 
-/** A branch of an axis: points from one end to the other; a single point for a round section. */
-using AxisBranch = std::vector<Vector2>;
+/** \brief A branch of an axis from one end or fork to the next, or around a hole back to where it starts; a single
+ * point for a round section. */
+struct AxisBranch
+{
+  std::vector<Vector2> points;
+  std::vector<double>  clearance; ///< of each point: its distance to the nearest contour, mm
+};
 
-/** \brief Pruned medial axis of a closed, simple polygon: the centres of the disks that touch it at two or more places.
+/** \brief Pruned medial axis of a region in the plane: the centres of the disks that touch its border at two or more
+ * places.
  *
- * The Voronoi diagram of the polygon's edges (Boost.Polygon, on a grid of 0.1 micrometre) is cut down to its
- * significant part by the chord residual of R. Ogniewicz, O. Kuebler, doi:10.1016/0031-3203(94)00105-U, which leaves it
- * connected; ends that run into sharp corners are taken back to a clearance of half the spacing. Branches meet in
- * common end points; each is sampled at even distances. Every point lies inside the polygon. Deterministic. \pre the
- * polygon is simple. */
+ * `contours[0]` is the closed, simple outer contour, the others its holes. The Voronoi diagram of their edges
+ * (Boost.Polygon, on a grid of 0.1 micrometre; arcs between an edge and a corner become chords) is cut back from its
+ * ends while the chord residual of R. Ogniewicz, O. Kuebler, doi:10.1016/0031-3203(94)00105-U, is insignificant, or the
+ * clearance less than half the spacing. Only ends are taken, so that the axis stays connected and keeps exactly one
+ * cycle around each hole. Branches meet in common end points; each is sampled at even distances, more finely where
+ * chords would leave the region or cross. Deterministic. \pre contours are simple, disjoint, and the holes lie in the
+ * first. */
 std::vector<AxisBranch>
-ComputeMedialAxis(const Polygon & polygon, const MedialAxisParameters & parameters);
+ComputeMedialAxis(const std::vector<Polygon> & contours, const MedialAxisParameters & parameters);
+
+/** For each of a slice's disjoint polygons the smallest one around it, -1: none. */
+std::vector<int>
+FindPolygonsAround(const std::vector<Polygon> & polygons);
 } // namespace bone
 
 #endif

@@ -12,9 +12,10 @@ namespace bone
 /** \class MedialAxisFilter
  * \brief Adds the pruned medial axis of each innermost contour as the innermost layer (paper 2.1).
  *
- * The output has the input's closed contours and, for each of them that holds no other and is no hole, its axis:
- * polylines with `axis` set, the contour's layer + 1 and its region. Branches share their end points; a round contour
- * has a single point. Axes of the input are replaced. How: \ref ComputeMedialAxis. */
+ * The output has the input's closed contours and, for each of them that is no hole and holds nothing but holes, the
+ * axis of the bone in it: polylines with `axis` set, the contour's layer + 1, its region, and each point's `clearance`.
+ * Branches share their end points and form a tree, with a cycle around each hole; a round contour has a single point.
+ * Axes of the input are replaced. How: \ref ComputeMedialAxis. */
 template <typename TContourStack = ContourStack>
 class MedialAxisFilter : public ContourStackFilter<TContourStack>
 {

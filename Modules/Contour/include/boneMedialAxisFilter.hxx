@@ -46,13 +46,21 @@ MedialAxisFilter<TContourStack>::MakeSlice(const TContourStack & input, std::siz
       }
     }
   }
+  const std::vector<int> around = FindPolygonsAround(polygons);
   for (std::size_t c = 0; c < polygons.size(); ++c)
   {
-    const Contour contour = result.contours[c];
-    const bool    holdsAnother = std::any_of(polygons.begin(), polygons.end(), [&](const Polygon & other) {
-      return &other != &polygons[c] && PointInPolygon(other[0], polygons[c]);
-    });
-    if (contour.region == Region::Outside || holdsAnother)
+    const Contour        contour = result.contours[c];
+    std::vector<Polygon> border(1, polygons[c]);
+    bool                 innermost = contour.region != Region::Outside;
+    for (std::size_t other = 0; other < polygons.size() && innermost; ++other)
+    {
+      if (around[other] == static_cast<int>(c))
+      {
+        border.push_back(polygons[other]);
+        innermost = result.contours[other].region == Region::Outside;
+      }
+    }
+    if (!innermost)
     {
       continue;
     }
@@ -62,14 +70,15 @@ MedialAxisFilter<TContourStack>::MakeSlice(const TContourStack & input, std::siz
       length += (polygons[c][(i + 1) % polygons[c].size()] - polygons[c][i]).norm();
     }
     parameters.spacing = m_Spacing > 0.0 ? m_Spacing : length / static_cast<double>(polygons[c].size());
-    for (const AxisBranch & branch : ComputeMedialAxis(polygons[c], parameters))
+    for (AxisBranch & branch : ComputeMedialAxis(border, parameters))
     {
       Contour axis;
       axis.axis = true;
       axis.layer = contour.layer + 1;
       axis.region = contour.region;
       axis.id = nextId++;
-      for (const Vector2 & q : branch)
+      axis.clearance = std::move(branch.clearance);
+      for (const Vector2 & q : branch.points)
       {
         axis.points.push_back(input.FromPlane(q, height));
       }

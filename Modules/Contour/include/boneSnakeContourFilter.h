@@ -117,6 +117,11 @@ public:
   /** Contours and holes of less area are left out, mm^2. Default 4. */
   itkSetMacro(MinimumContourArea, double);
   itkGetConstMacro(MinimumContourArea, double);
+  /** Whether pieces and holes of a single slice, and bodies of few slices or little volume, are kept. Default off: they
+   * are left out, and a warning counts them. */
+  itkSetMacro(KeepSmallPieces, bool);
+  itkGetConstMacro(KeepSmallPieces, bool);
+  itkBooleanMacro(KeepSmallPieces);
   /** What never reaches it is no bone, HU. Default 150. */
   itkSetMacro(BoneThreshold, double);
   itkGetConstMacro(BoneThreshold, double);
@@ -218,6 +223,7 @@ private:
   int              m_NumberOfLayers{ 3 };
   double           m_MinimumLayerDistance{ 0.0 };
   double           m_MinimumContourArea{ 4.0 };
+  bool             m_KeepSmallPieces{ false };
   double           m_BoneThreshold{ 150.0 };
   double           m_EndostealThreshold{ 0.0 };
   double           m_MedullaryThreshold{ 40.0 };

@@ -264,6 +264,7 @@ SnakeContourFilter<TInputImage, TContourStack>::MakeParameters(const Frame & fra
   parameters.snake.tolerance = m_ConvergenceTolerance;
   parameters.minimumSlope = m_MinimumEdgeSlope;
   parameters.minimumArea = m_MinimumContourArea;
+  parameters.keepSmallPieces = m_KeepSmallPieces;
   parameters.boneThreshold = m_BoneThreshold;
   parameters.followStep = frame.slices.step;
   parameters.refineDistance = m_RefineDistance > 0.0 ? m_RefineDistance : pixel;
@@ -577,6 +578,7 @@ SnakeContourFilter<TInputImage, TContourStack>::PrintSelf(std::ostream & os, itk
   os << indent << "NumberOfLayers: " << m_NumberOfLayers << '\n';
   os << indent << "MinimumLayerDistance: " << m_MinimumLayerDistance << '\n';
   os << indent << "MinimumContourArea: " << m_MinimumContourArea << '\n';
+  os << indent << "KeepSmallPieces: " << m_KeepSmallPieces << '\n';
   os << indent << "BoneThreshold: " << m_BoneThreshold << '\n';
   os << indent << "EndostealThreshold: " << m_EndostealThreshold << '\n';
   os << indent << "MedullaryThreshold: " << m_MedullaryThreshold << '\n';

@@ -4,6 +4,7 @@
 #include "boneContourExtraction.h"
 
 #include "boneBoneFollower.h"
+#include "boneLayerDistance.h"
 #include "bonePlanarCrossing.h"
 
 #include <algorithm>
@@ -193,6 +194,31 @@ EvenSections(double first, double step, double last, double slack)
   }
   return sections;
 }
+
+// Inner layers come from a grid, a little off their least distance.
+void
+KeepLayersApart(BoneSection & section, double distance)
+{
+  for (BonePiece & piece : section.pieces)
+  {
+    const Polygon endosteal = piece.endosteal;
+    const Polygon medullary = piece.medullary;
+    if (!endosteal.empty())
+    {
+      MoveAway(piece.endosteal, piece.outer, true, distance);
+    }
+    if (!medullary.empty())
+    {
+      MoveAway(piece.medullary, piece.endosteal, true, distance);
+    }
+    if (AnyCrossing(LoopsOf({ 0.0, { { piece.outer, piece.holes, {}, {} }, { piece.endosteal, {}, {}, {} } } })) ||
+        (!medullary.empty() && AnyCrossing({ piece.endosteal, piece.medullary })))
+    {
+      piece.endosteal = endosteal;
+      piece.medullary = medullary;
+    }
+  }
+}
 } // namespace
 
 std::vector<BoneSection>
@@ -321,7 +347,11 @@ FinishSections(std::vector<BoneSection> &   sections,
                const ParallelFor &          parallel,
                ExtractionReport &           report)
 {
-  std::vector<std::string> lines = DropShortLived(sections, 3, parameters.minimumVolume);
+  std::vector<std::string> lines;
+  if (!parameters.keepSmallPieces)
+  {
+    lines = DropShortLived(sections, 3, parameters.minimumVolume);
+  }
   report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
   report.slices.resize(sections.size());
   const auto empty = [](const BoneSection & section) { return section.pieces.empty(); };
@@ -335,6 +365,7 @@ FinishSections(std::vector<BoneSection> &   sections,
     report.slices[k].height = sections[k].height;
   }
   lines = FindInnerLayers(sections, planes, pixel, parameters.layers, parallel);
+  parallel(sections.size(), [&](std::size_t k) { KeepLayersApart(sections[k], parameters.layers.minimumDistance); });
   report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
 }
 } // namespace bone

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneContourSampling.h"
 
+#include "boneLayerDistance.h"
+#include "boneMedialAxis.h"
 #include "bonePlanarCrossing.h"
 
 #include <algorithm>
@@ -24,25 +26,12 @@ struct LoopPlan
   BSplineFit           fit;
   double               scale{ 1.0 }; // of spacing and tolerance
   bool                 keep{ false };
+  int                  layer{ 0 };
+  bool                 hole{ false };
   Polygon              sampled;
   std::vector<Vector2> curve;  // fine points on the spline
   std::vector<double>  target; // spacing wanted there
 };
-
-double
-DistanceToPolygon(const Vector2 & q, const Polygon & polygon)
-{
-  double best = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    const Vector2 & a = polygon[i];
-    const Vector2   d = polygon[(i + 1) % polygon.size()] - a;
-    const double    squared = d.squaredNorm();
-    const double    t = squared > 0.0 ? std::clamp((q - a).dot(d) / squared, 0.0, 1.0) : 0.0;
-    best = std::min(best, (q - a - t * d).squaredNorm());
-  }
-  return std::sqrt(best);
-}
 
 double
 Perimeter(const Polygon & polygon)
@@ -105,15 +94,16 @@ ShareAlong(LoopPlan & plan)
 class SliceSampler
 {
 public:
-  SliceSampler(std::vector<Polygon> given, const SamplingParameters & parameters, SamplingReport & report)
+  SliceSampler(std::vector<LoopPlan> plans, const SamplingParameters & parameters, SamplingReport & report)
     : m_Parameters(parameters)
     , m_Report(report)
-    , m_Plans(given.size())
+    , m_Plans(std::move(plans))
   {
-    for (std::size_t c = 0; c < given.size(); ++c)
+    for (const LoopPlan & plan : m_Plans)
     {
-      m_Plans[c].given = std::move(given[c]);
+      m_ToGiven.emplace_back(plan.given);
     }
+    this->FindNeighbours();
   }
 
   std::vector<Polygon>
@@ -133,7 +123,15 @@ public:
           this->Sample(c);
         }
       }
+      const std::vector<char> apart = this->MoveApart();
       dirty = this->FindConflicts();
+      for (std::size_t p = 0; p < m_Pairs.size(); ++p)
+      {
+        if (apart[p] == 0)
+        {
+          dirty[m_Pairs[p].inner] = dirty[m_Pairs[p].fixed] = 1;
+        }
+      }
       again = false;
       for (std::size_t c = 0; c < m_Plans.size(); ++c)
       {
@@ -141,9 +139,12 @@ public:
         again = again || dirty[c] != 0;
       }
     }
+    m_Report.near += static_cast<int>(std::count_if(
+      m_Pairs.begin(), m_Pairs.end(), [this](const Pair & pair) { return pair.gap < m_Parameters.minimumDistance; }));
     std::vector<Polygon> result;
     for (LoopPlan & plan : m_Plans)
     {
+      m_Report.samples += static_cast<int>(plan.sampled.size());
       m_Report.refined += plan.scale < 1.0;
       m_Report.unfitted += plan.keep;
       m_Report.largestError = plan.keep ? m_Report.largestError : std::max(m_Report.largestError, plan.fit.deviation);
@@ -153,6 +154,88 @@ public:
   }
 
 private:
+  // An inner contour and one that it must keep away from: the one around it, or a hole beside it.
+  struct Pair
+  {
+    std::size_t inner;
+    std::size_t fixed;
+    bool        inside; // of the fixed one
+    double      gap;
+  };
+
+  // Pairs from the outside in.
+  void
+  FindNeighbours()
+  {
+    std::vector<Polygon> given;
+    for (const LoopPlan & plan : m_Plans)
+    {
+      given.push_back(plan.given);
+    }
+    const std::vector<int> around = FindPolygonsAround(given);
+    for (std::size_t c = 0; c < m_Plans.size(); ++c)
+    {
+      for (std::size_t other = 0; other < m_Plans.size(); ++other)
+      {
+        const bool inside = around[c] == static_cast<int>(other) && !m_Plans[other].hole;
+        const bool beside = around[c] >= 0 && around[c] == around[other] && m_Plans[other].hole;
+        if (other == c || m_Plans[c].hole || m_Plans[c].layer == 0 || (!inside && !beside))
+        {
+          continue;
+        }
+        m_Pairs.push_back({ c, other, inside, m_Parameters.minimumDistance });
+      }
+    }
+    std::stable_sort(m_Pairs.begin(), m_Pairs.end(), [this](const Pair & a, const Pair & b) {
+      return m_Plans[a.inner].layer < m_Plans[b.inner].layer;
+    });
+  }
+
+  // Whether each pair keeps its distance; a contour with several goes round them a few times. A pair that cannot shall
+  // from then on keep what the contours given do.
+  std::vector<char>
+  MoveApart()
+  {
+    std::vector<char> apart(m_Pairs.size(), 1);
+    for (int round = 0; round < 4; ++round)
+    {
+      int moved = 0;
+      for (std::size_t p = 0; p < m_Pairs.size(); ++p)
+      {
+        const int moves = this->Separate(m_Pairs[p]);
+        apart[p] = moves >= 0 ? 1 : 0;
+        moved += std::max(moves, 0);
+      }
+      m_Report.moved += moved;
+      if (moved == 0)
+      {
+        break;
+      }
+    }
+    for (std::size_t p = 0; p < m_Pairs.size(); ++p)
+    {
+      if (apart[p] == 0)
+      {
+        m_Pairs[p].gap = std::min(
+          m_Pairs[p].gap, 0.9 * DistanceBetween(m_Plans[m_Pairs[p].inner].given, m_Plans[m_Pairs[p].fixed].given));
+      }
+    }
+    return apart;
+  }
+
+  // Number of moves, -1: the pair remains too near.
+  int
+  Separate(const Pair & pair)
+  {
+    LoopPlan &       inner = m_Plans[pair.inner];
+    const LoopPlan & fixed = m_Plans[pair.fixed];
+    if (!inner.keep)
+    {
+      return MoveAway(inner.sampled, fixed.sampled, pair.inside, pair.gap);
+    }
+    return fixed.keep || DistanceBetween(inner.sampled, fixed.sampled) >= 0.5 * pair.gap ? 0 : -1;
+  }
+
   void
   Fit(LoopPlan & plan) const
   {
@@ -179,11 +262,11 @@ private:
     {
       if (other != c)
       {
-        const double distance = DistanceToPolygon(plan.curve[i], m_Plans[other].given);
+        const double distance = m_ToGiven[other](plan.curve[i]).distance;
         spacing = std::min(spacing, m_Parameters.thinLayerRatio * distance);
       }
     }
-    return plan.scale * std::max(spacing, m_Parameters.minimumSpacing);
+    return plan.scale * m_Parameters.spacingScale * std::max(spacing, m_Parameters.minimumSpacing);
   }
 
   void
@@ -217,7 +300,7 @@ private:
     }
   }
 
-  // Contours that cross, touch, or come nearer to another than the minimum distance and half of what was given.
+  // Contours that cross, touch, or come too near to another.
   std::vector<int>
   FindConflicts() const
   {
@@ -236,7 +319,7 @@ private:
     {
       for (std::size_t b = 0; b < m_Plans.size(); ++b)
       {
-        if (a != b && this->ComeTooNear(m_Plans[a], m_Plans[b]))
+        if (a != b && this->ComeTooNear(a, b))
         {
           conflict[a] = conflict[b] = 1;
         }
@@ -245,12 +328,20 @@ private:
     return conflict;
   }
 
+  // Contours that are no pair, such as two pieces of bone, keep half of the minimum distance or of what they had.
   bool
-  ComeTooNear(const LoopPlan & a, const LoopPlan & b) const
+  ComeTooNear(std::size_t a, std::size_t b) const
   {
-    return std::any_of(a.sampled.begin(), a.sampled.end(), [&](const Vector2 & q) {
-      const double distance = DistanceToPolygon(q, b.sampled);
-      return distance < m_Parameters.minimumDistance && distance < 0.5 * DistanceToPolygon(q, b.given);
+    if (std::any_of(m_Pairs.begin(), m_Pairs.end(), [a, b](const Pair & pair) {
+          return (pair.inner == a && pair.fixed == b) || (pair.inner == b && pair.fixed == a);
+        }))
+    {
+      return false;
+    }
+    const NearestOnPolygon toSampled(m_Plans[b].sampled);
+    return std::any_of(m_Plans[a].sampled.begin(), m_Plans[a].sampled.end(), [&](const Vector2 & q) {
+      const double distance = toSampled(q).distance;
+      return distance < 0.5 * m_Parameters.minimumDistance && distance < 0.5 * m_ToGiven[b](q).distance;
     });
   }
 
@@ -271,9 +362,11 @@ private:
     return true;
   }
 
-  const SamplingParameters & m_Parameters;
-  SamplingReport &           m_Report;
-  std::vector<LoopPlan>      m_Plans;
+  const SamplingParameters &    m_Parameters;
+  SamplingReport &              m_Report;
+  std::vector<LoopPlan>         m_Plans;
+  std::vector<NearestOnPolygon> m_ToGiven; // in the order of the plans
+  std::vector<Pair>             m_Pairs;
 };
 } // namespace
 
@@ -283,23 +376,25 @@ SampleSlice(const ContourSlice &       slice,
             const SamplingParameters & parameters,
             SamplingReport &           report)
 {
-  ContourSlice         result;
-  std::vector<Polygon> given;
+  ContourSlice          result;
+  std::vector<LoopPlan> plans;
   result.origin = slice.origin;
   for (const Contour & contour : slice.contours)
   {
     if (!contour.axis)
     {
       result.contours.push_back(contour);
-      given.emplace_back();
+      plans.emplace_back();
+      plans.back().layer = contour.layer;
+      plans.back().hole = contour.region == Region::Outside;
       for (const Vector3 & point : contour.points)
       {
-        given.back().push_back(frame.ToPlane(point));
+        plans.back().given.push_back(frame.ToPlane(point));
       }
     }
   }
   const double               height = slice.origin.dot(frame.GetNormal());
-  const std::vector<Polygon> sampled = SliceSampler(std::move(given), parameters, report).Run();
+  const std::vector<Polygon> sampled = SliceSampler(std::move(plans), parameters, report).Run();
   for (std::size_t c = 0; c < sampled.size(); ++c)
   {
     result.contours[c].points.clear();
@@ -309,5 +404,38 @@ SampleSlice(const ContourSlice &       slice,
     }
   }
   return result;
+}
+
+std::size_t
+CountSamples(const ContourStack & stack)
+{
+  std::size_t count = 0;
+  for (const ContourSlice & slice : stack.GetSlices())
+  {
+    for (const Contour & contour : slice.contours)
+    {
+      count += contour.axis ? 0 : contour.points.size();
+    }
+  }
+  return count;
+}
+
+double
+EstimateTetrahedra(const ContourStack & stack)
+{
+  // Measured on tilings of real bones at spacings of 2 to 6 mm.
+  constexpr double perPoint = 1.0;
+  double           sum = 0.0;
+  const auto       n = stack.GetSlices().size();
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const double slabs = (k > 0 ? 1.0 : 0.0) + (k + 1 < n ? 1.0 : 0.0);
+    for (const Contour & contour : stack.GetSlices()[k].contours)
+    {
+      const double rings = contour.layer == 0 ? 1.0 : 2.0;
+      sum += contour.axis ? 0.0 : slabs * rings * static_cast<double>(contour.points.size());
+    }
+  }
+  return perPoint * sum;
 }
 } // namespace bone

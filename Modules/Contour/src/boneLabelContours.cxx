@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneLabelContours.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bone
@@ -18,6 +19,97 @@ TotalArea(const std::vector<Polygon> & contours)
     area += SignedArea(contour);
   }
   return area;
+}
+
+constexpr double LevelRange = 0.35; // of the grid's spacing
+
+// A label seen in a plane.
+struct LabelPlane
+{
+  const LabelField & label;
+  const PlaneField & field;
+  Vector3            u;
+  Vector3            v;
+  double             height;
+
+  // Area of the label, or (for a hole) of what is not the label, in the box around a contour.
+  double
+  AreaAbout(const Polygon & contour, bool hole) const
+  {
+    const PlaneGrid box = CoveringGrid({ contour }, 0.0, field.grid.origin, field.grid.spacing);
+    const double    area = label.LabelArea(box, u, v, height);
+    return hole ? static_cast<double>(box.Count()) * box.spacing.x() * box.spacing.y() - area : area;
+  }
+};
+
+// The contour around a point, alone, at a level; empty where it is merged with another or there is none.
+Polygon
+ContourAlone(const PlaneField & field, double level, const Polygon & seed, const std::vector<Polygon> & others)
+{
+  for (Polygon & contour : ExtractLevelContours(field, level))
+  {
+    if ((SignedArea(contour) < 0.0) != (SignedArea(seed) < 0.0) || !PointInPolygon(seed[0], contour))
+    {
+      continue;
+    }
+    for (const Polygon & other : others)
+    {
+      if (other[0] != seed[0] && PointInPolygon(other[0], contour))
+      {
+        return {};
+      }
+    }
+    return std::move(contour);
+  }
+  return {};
+}
+
+// Removes contours whose label's area is below `minimumArea`; returns how many. A voxel or two alone, or a hole of that
+// size, is smoothed to a fraction of its area and gets a level of its own.
+int
+SettleSmall(const LabelPlane & plane, double level, double minimumArea, std::vector<Polygon> & contours)
+{
+  const std::vector<Polygon> before = contours;
+  int                        dropped = 0;
+  for (std::size_t c = 0; c < contours.size(); ++c)
+  {
+    if (std::abs(SignedArea(contours[c])) >= minimumArea)
+    {
+      continue;
+    }
+    const bool hole = SignedArea(contours[c]) < 0.0;
+    double     tight = level;
+    double     wide = level;
+    Polygon    best;
+    for (double factor = 2.0; factor > 0.3 && best.empty(); factor *= 0.7)
+    {
+      wide = level + (hole ? factor : -factor) * LevelRange * plane.field.grid.spacing.minCoeff();
+      best = ContourAlone(plane.field, wide, before[c], before);
+    }
+    const double wanted = best.empty() ? 0.0 : plane.AreaAbout(best, hole);
+    if (best.empty() || wanted < minimumArea)
+    {
+      contours[c].clear();
+      ++dropped;
+      continue;
+    }
+    for (int step = 0; step < 8; ++step)
+    {
+      const double middle = 0.5 * (tight + wide);
+      Polygon      contour = ContourAlone(plane.field, middle, before[c], before);
+      const double area = contour.empty() ? 0.0 : std::abs(SignedArea(contour));
+      (area < wanted ? tight : wide) = middle;
+      if (area >= wanted)
+      {
+        best = std::move(contour);
+      }
+    }
+    contours[c] = std::move(best);
+  }
+  contours.erase(
+    std::remove_if(contours.begin(), contours.end(), [](const Polygon & contour) { return contour.empty(); }),
+    contours.end());
+  return dropped;
 }
 } // namespace
 
@@ -37,8 +129,8 @@ ContoursOfLabel(const LabelField & label,
   }
   const PlaneField     field = label.SamplePlane(grid, u, v, height);
   std::vector<Polygon> contours = ExtractLevelContours(field, 0.0);
-  double               low = -0.35 * grid.spacing.minCoeff(); // encloses too much
-  double               high = -low;                           // encloses too little
+  double               low = -LevelRange * grid.spacing.minCoeff(); // encloses too much
+  double               high = -low;                                 // encloses too little
   double               level = 0.0;
   double               area = TotalArea(contours);
   for (int step = 0; step < 12 && std::abs(area - wanted) > 1e-3 * wanted; ++step)
@@ -48,6 +140,7 @@ ContoursOfLabel(const LabelField & label,
     contours = ExtractLevelContours(field, level);
     area = TotalArea(contours);
   }
-  return GroupPieces(std::move(contours), minimumArea, dropped);
+  dropped += SettleSmall({ label, field, u, v, height }, level, minimumArea, contours);
+  return GroupPieces(std::move(contours), 0.0, dropped);
 }
 } // namespace bone

@@ -104,6 +104,93 @@ TEST(ContourResampleFilter, SpacingFollowsCurvatureBetweenItsLimits)
   EXPECT_NEAR(atSide, 4.0, 0.5);
 }
 
+TEST(ContourResampleFilter, DensityIsTheSquareRootOfCurvature)
+{
+  auto filter = Resampler(OneSlice({ Ellipse(20, 12, 800) }, { 0 }), 50.0);
+  filter->SetMinimumSpacing(0.05);
+  filter->SetTolerance(0.01);
+  filter->Update();
+  const Polygon sampled = PlanePoints(*filter->GetOutput(), filter->GetOutput()->GetSlices()[0].contours[0]);
+  for (std::size_t i = 0; i < sampled.size(); ++i)
+  {
+    const Vector2 next = sampled[(i + 1) % sampled.size()];
+    const Vector2 middle = 0.5 * (sampled[i] + next);
+    // Curvature of the ellipse at the middle's parameter.
+    const double t = std::atan2(middle.y() / 12.0, middle.x() / 20.0);
+    const double speed = std::hypot(20.0 * std::sin(t), 12.0 * std::cos(t));
+    const double curvature = 20.0 * 12.0 / (speed * speed * speed);
+    EXPECT_NEAR((next - sampled[i]).norm() / std::sqrt(0.08 / curvature), 1.0, 0.1);
+  }
+}
+
+TEST(ContourResampleFilter, TargetsAreMet)
+{
+  auto stack = OneSlice({ Ellipse(25, 14, 400), Ellipse(21, 10, 400) }, { 0, 1 });
+  auto slices = stack->GetSlices();
+  for (int k = 1; k < 6; ++k)
+  {
+    slices.push_back(slices[0]);
+    slices.back().origin.z() = k;
+    for (Contour & contour : slices.back().contours)
+    {
+      for (Vector3 & p : contour.points)
+      {
+        p = Vector3(p.x(), p.y() * (1.0 - 0.02 * k), k);
+      }
+    }
+  }
+  stack->SetSlices(slices);
+  auto filter = Resampler(stack, 4.0);
+  for (const std::size_t target : { 240u, 500u, 1500u })
+  {
+    filter->SetTargetNumberOfSamples(target);
+    filter->Update();
+    EXPECT_NEAR(static_cast<double>(CountSamples(*filter->GetOutput())) / static_cast<double>(target), 1.0, 0.02);
+    EXPECT_EQ(filter->GetReport().samples, static_cast<int>(CountSamples(*filter->GetOutput())));
+  }
+  filter->SetTargetNumberOfTetrahedra(4000);
+  EXPECT_THAT(MessageOf([&] { filter->Update(); }), HasSubstr("TargetNumberOfTetrahedra"));
+  filter->SetTargetNumberOfSamples(0);
+  filter->Update();
+  EXPECT_NEAR(EstimateTetrahedra(*filter->GetOutput()) / 4000.0, 1.0, 0.02);
+  EXPECT_TRUE(filter->GetWarnings().empty());
+  // Eight points a contour is the least there is.
+  filter->SetTargetNumberOfTetrahedra(100);
+  filter->Update();
+  EXPECT_THAT(filter->GetWarnings().at(0), HasSubstr("nearest to 100 tetrahedra"));
+}
+
+TEST(ContourResampleFilter, NestedContoursKeepTheirDistanceAtAnySpacing)
+{
+  Polygon hole = Ellipse(2, 2, 80, { 11.8, 0 });
+  std::reverse(hole.begin(), hole.end());
+  for (const double spacing : { 1.0, 3.0, 6.0 })
+  {
+    auto filter = Resampler(
+      OneSlice({ Ellipse(20, 14, 400), Ellipse(19.2, 13.2, 400, { 0, 0 }), Ellipse(9, 9, 200), hole }, { 0, 1, 2, 1 }),
+      spacing);
+    filter->SetMinimumSpacing(0.5 * spacing);
+    filter->Update();
+    const ContourStack & output = *filter->GetOutput();
+    const auto &         contours = output.GetSlices()[0].contours;
+    const auto           least = [&](int a, int b) {
+      double distance = 1e9;
+      for (const auto & [from, to] : { std::pair{ a, b }, std::pair{ b, a } })
+      {
+        const auto polygon = PlanePoints(output, contours[static_cast<std::size_t>(to)]);
+        for (const Vector2 & q : PlanePoints(output, contours[static_cast<std::size_t>(from)]))
+        {
+          distance = std::min(distance, DistanceTo(q, polygon));
+        }
+      }
+      return distance;
+    };
+    EXPECT_GE(least(0, 1), 0.8);
+    EXPECT_GE(least(1, 2), 0.8);
+    EXPECT_GE(least(2, 3), 0.8 * (1.0 - 1e-9));
+  }
+}
+
 TEST(ContourResampleFilter, SamplesLieOnTheSplineAndKeepOrder)
 {
   const Polygon outer = Ellipse(20, 14, 400);

@@ -27,6 +27,8 @@ struct Contour
   int region{ Region::Cortical };
   /** True for an open polyline (or a single point) of a medial axis, false for a closed contour. */
   bool axis{ false };
+  /** Of a medial axis: each point's distance to the nearest contour (mm); may be empty. */
+  std::vector<double> clearance;
 };
 
 /** The contours of one plane. */
@@ -116,9 +118,9 @@ public:
   std::size_t
   GetNumberOfContours() const;
 
-  /** Throws itk::ExceptionObject, naming slice and contour, where: heights do not increase; a closed contour has fewer
-   * than three points or crosses or touches itself or another contour of its slice; a point is not finite or off its
-   * plane. O(n log n). */
+  /** Throws itk::ExceptionObject, naming slice and contour, where: heights do not increase; clearances are not as many
+   * as points; a closed contour has fewer than three points or crosses or touches itself or another contour of its
+   * slice; a point is not finite or off its plane. O(n log n). */
   void
   Verify() const;
 

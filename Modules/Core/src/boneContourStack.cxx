@@ -35,6 +35,10 @@ DescribeBadPoints(const Contour & contour, const ContourStack & stack, double he
   {
     return contour.axis ? "has no point" : "has fewer than three points";
   }
+  if (!contour.clearance.empty() && contour.clearance.size() != n)
+  {
+    return "has " + std::to_string(contour.clearance.size()) + " clearances for " + std::to_string(n) + " points";
+  }
   for (std::size_t i = 0; i < n; ++i)
   {
     std::ostringstream text;

@@ -10,11 +10,19 @@
 
 namespace bone
 {
-/** \defgroup ContourIO Contours in VTK's poly-data format (.vtp) and as 3D Slicer markups (.mrk.json)
+/** \defgroup ContourIO Contours in VTK's poly-data format, as 3D Slicer markups, label maps and DICOM structure sets
  *
  * Arrays: see the table in the module's README. All functions throw IOError: one line that names the file and what is
  * wrong.
  * \{ */
+
+/** What to take from a file that holds more than one bone, and how it is sliced. */
+struct ContourSelection
+{
+  std::string  structure;  ///< name of a DICOM structure; empty: the only one that has contours
+  int          label{ 0 }; ///< value in a label map; 0: every voxel that is not 0
+  unsigned int axis{ 2 };  ///< image axis (0, 1, 2) across the slices of a label map
+};
 
 /** Reads contours and verifies them (ContourStack::Verify): a contour that crosses itself is refused.
  *
@@ -24,12 +32,20 @@ namespace bone
  * others become holes, and directions of travel follow ContourStack's convention. Lines that end in their first point,
  * and polygons, are closed contours too.
  *
- * .mrk.json: every markup of type ClosedCurve is an exterior contour through its control points (Slicer's spline
- * between them is not followed); `coordinateSystem` LPS (also where it is missing) and RAS are understood. */
+ * .mrk.json: every markup of type ClosedCurve is a contour through its control points (Slicer's spline between them is
+ * not followed), exterior unless WriteContours noted its layer; `coordinateSystem` LPS (also where it is missing) and
+ * RAS are understood.
+ *
+ * DICOM RT structure sets (.dcm, or any file with DICOM's mark): the closed planar contours of one structure, read by
+ * GDCM. Contours inside others are holes; one that walks to a hole and back by the same way (a keyhole) is taken apart.
+ *
+ * Any other file is read as a label map: the outlines of the label on each slice that has it, half-way between voxels.
+ */
 ContourStack::Pointer
-ReadContours(const std::string & path);
+ReadContours(const std::string & path, const ContourSelection & selection = {});
 
-/** Writes all of the stack as .vtp, the whole file or none. */
+/** Writes all of the stack as .vtp, or its closed contours as .mrk.json (in LPS, with layer, region, id and slice as
+ * the control points' description; medial axes are left out). The whole file or none. */
 void
 WriteContours(const ContourStack * stack, const std::string & path);
 /** \} */

@@ -4,8 +4,10 @@
 #include "boneContourIO.h"
 
 #include "boneAtomicFile.h"
+#include "boneContourImage.h"
 #include "boneMarkups.h"
 #include "bonePolylines.h"
+#include "boneStructureSet.h"
 #include "boneVtkArrays.h"
 #include "boneVtkFile.h"
 
@@ -13,6 +15,7 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkIntArray.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkTypeInt64Array.h>
@@ -31,6 +34,28 @@ CellNumbers(vtkPolyData * data, const char * name, long long lowest)
 {
   vtkDataArray * array = FindArray(data->GetCellData(), name, data->GetNumberOfCells(), 1);
   return array != nullptr ? WholeNumbers(array, lowest, Highest) : std::vector<int>();
+}
+
+// Clearances of an axis's points, where the file has them.
+std::vector<double>
+CellClearance(vtkDataArray * clearance, vtkCellArray * cells, vtkIdType cell)
+{
+  std::vector<double> values;
+  if (clearance != nullptr)
+  {
+    vtkIdType         size = 0;
+    const vtkIdType * ids = nullptr;
+    cells->GetCellAtId(cell, size, ids);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      values.push_back(clearance->GetComponent(ids[i], 0));
+      if (!(values.back() >= 0.0) || !std::isfinite(values.back()))
+      {
+        Refuse("'Clearance' of point ", ids[i], " is ", values.back(), "; it must be 0 or more");
+      }
+    }
+  }
+  return values;
 }
 
 std::vector<Vector3>
@@ -80,6 +105,7 @@ ReadPolylines(vtkPolyData * data)
   const auto id = CellNumbers(data, "Contour", 0);
   const auto region = CellNumbers(data, "Region", 0);
   const auto axis = CellNumbers(data, "Axis", 0);
+  auto *     clearance = FindArray(data->GetPointData(), "Clearance", data->GetNumberOfPoints(), 1);
 
   std::vector<Polyline> polylines;
   for (vtkCellArray * cells : { data->GetVerts(), data->GetLines(), data->GetPolys() })
@@ -96,6 +122,11 @@ ReadPolylines(vtkPolyData * data)
       if (repeats && (!contour.axis || contour.points.size() == 2))
       {
         contour.points.pop_back();
+      }
+      if (contour.axis)
+      {
+        contour.clearance = CellClearance(clearance, cells, c);
+        contour.clearance.resize(contour.clearance.empty() ? 0 : contour.points.size());
       }
       RequireEnoughPoints(contour, cell);
       contour.layer = layer.empty() ? 0 : layer[cell];
@@ -227,7 +258,9 @@ ToPolyData(const ContourStack * stack)
   };
   std::vector<Row>     rows;
   std::vector<Vector3> points;
+  std::vector<double>  clearance; // 0 on a contour
   std::vector<int>     offsets{ 0 };
+  bool                 anyClearance = false;
   for (std::size_t k = 0; k < stack->GetSlices().size(); ++k)
   {
     for (const Contour & contour : stack->GetSlices()[k].contours)
@@ -238,6 +271,9 @@ ToPolyData(const ContourStack * stack)
       {
         points.push_back(contour.points.front()); // VTK knows no line of one point
       }
+      clearance.insert(clearance.end(), contour.clearance.begin(), contour.clearance.end());
+      clearance.resize(points.size(), contour.clearance.empty() ? 0.0 : contour.clearance.back());
+      anyClearance = anyClearance || !contour.clearance.empty();
       offsets.push_back(static_cast<int>(points.size()));
     }
   }
@@ -246,6 +282,11 @@ ToPolyData(const ContourStack * stack)
   auto       vtkpoints = vtkSmartPointer<vtkPoints>::New();
   vtkpoints->SetData(MakeArray<vtkDoubleArray>("Points", np, 3, [&](vtkIdType p, int k) { return points[p][k]; }));
   data->SetPoints(vtkpoints);
+  if (anyClearance)
+  {
+    data->GetPointData()->AddArray(
+      MakeArray<vtkDoubleArray>("Clearance", np, 1, [&](vtkIdType p, int) { return clearance[p]; }));
+  }
   auto lines = vtkSmartPointer<vtkCellArray>::New();
   lines->SetData(MakeArray<vtkTypeInt64Array>("offsets", nc + 1, 1, [&](vtkIdType c, int) { return offsets[c]; }),
                  MakeArray<vtkTypeInt64Array>("connectivity", np, 1, [](vtkIdType p, int) { return p; }));
@@ -264,14 +305,33 @@ ToPolyData(const ContourStack * stack)
 }
 } // namespace
 
+namespace
+{
 ContourStack::Pointer
-ReadContours(const std::string & path)
+ReadStack(const std::string & path, const ContourSelection & selection)
+{
+  if (HasExtension(path, ".vtp"))
+  {
+    return ToContourStack(ReadVtpFile(path));
+  }
+  if (HasExtension(path, ".mrk.json"))
+  {
+    return StackPolylines(ReadMarkups(path), Vector3::Zero(), Vector3::Zero());
+  }
+  if (HasExtension(path, ".dcm") || IsDicomFile(path))
+  {
+    return StackPolylines(ReadStructure(path, selection.structure), Vector3::Zero(), Vector3::Zero());
+  }
+  return TraceLabels(ReadLabels(path), selection.label, selection.axis);
+}
+} // namespace
+
+ContourStack::Pointer
+ReadContours(const std::string & path, const ContourSelection & selection)
 {
   RequireReadableFile(path);
-  RequireExtension(path, { ".vtp", ".mrk.json" });
   return NamingFile(path, [&] {
-    auto stack = HasExtension(path, ".vtp") ? ToContourStack(ReadVtpFile(path))
-                                            : StackPolylines(ReadMarkups(path), Vector3::Zero(), Vector3::Zero());
+    auto stack = ReadStack(path, selection);
     stack->Verify();
     return stack;
   });
@@ -280,7 +340,12 @@ ReadContours(const std::string & path)
 void
 WriteContours(const ContourStack * stack, const std::string & path)
 {
-  RequireExtension(path, { ".vtp" });
+  RequireExtension(path, { ".vtp", ".mrk.json" });
+  if (HasExtension(path, ".mrk.json"))
+  {
+    WriteFileAtomically(path, ToMarkups(*stack));
+    return;
+  }
   AtomicFile file(path);
   WriteVtpFile(ToPolyData(stack), file);
   file.Commit();

@@ -6,6 +6,8 @@
 #include "boneJson.h"
 #include "boneRefuse.h"
 
+#include <cstdio>
+
 namespace bone
 {
 namespace
@@ -22,6 +24,25 @@ SignToLps(const json & markup)
     Refuse("'coordinateSystem' is '", system, "'; LPS and RAS are known");
   }
   return system == "LPS" ? 1.0 : -1.0;
+}
+
+// What WriteContours notes with each control point, so that a contour can be told from its points.
+constexpr const char * NoteFormat = "layer %d, region %d, contour %d, slice %d";
+
+void
+ReadNote(const json & point, Polyline & polyline)
+{
+  const std::string text = point.contains("description") ? TextMember(point, "description") : std::string();
+  Contour           contour;
+  int               slice = -1;
+  if (std::sscanf(text.c_str(), NoteFormat, &contour.layer, &contour.region, &contour.id, &slice) == 4 &&
+      contour.layer >= 0 && contour.region >= 0 && contour.id >= 0)
+  {
+    polyline.contour.layer = contour.layer;
+    polyline.contour.region = contour.region;
+    polyline.contour.id = contour.id;
+    polyline.hasRegion = polyline.hasId = true;
+  }
 }
 
 Polyline
@@ -41,6 +62,7 @@ ReadClosedCurve(const json & markup)
       continue;
     }
     const Vector3 position = NumbersMember(point, "position", 3);
+    ReadNote(point, polyline);
     polyline.contour.points.emplace_back(sign * position.x(), sign * position.y(), position.z());
   }
   auto & curve = polyline.contour.points;
@@ -78,5 +100,42 @@ ReadMarkups(const std::string & path)
     }
     return polylines;
   });
+}
+
+std::string
+ToMarkups(const ContourStack & stack)
+{
+  json markups = json::array();
+  for (std::size_t k = 0; k < stack.GetSlices().size(); ++k)
+  {
+    for (const Contour & contour : stack.GetSlices()[k].contours)
+    {
+      if (contour.axis)
+      {
+        continue;
+      }
+      char note[80];
+      std::snprintf(note, sizeof(note), NoteFormat, contour.layer, contour.region, contour.id, static_cast<int>(k));
+      json points = json::array();
+      for (std::size_t i = 0; i < contour.points.size(); ++i)
+      {
+        points.push_back({ { "id", std::to_string(i + 1) },
+                           { "label", "" },
+                           { "description", note },
+                           { "position", ToJson(contour.points[i]) },
+                           { "positionStatus", "defined" } });
+      }
+      markups.push_back({ { "type", "ClosedCurve" },
+                          { "name", "slice " + std::to_string(k) + " contour " + std::to_string(contour.id) },
+                          { "coordinateSystem", "LPS" },
+                          { "coordinateUnits", "mm" },
+                          { "controlPoints", std::move(points) } });
+    }
+  }
+  const json document = { { "@schema",
+                            "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
+                            "Resources/Schema/markups-schema-v1.0.3.json#" },
+                          { "markups", std::move(markups) } };
+  return document.dump(1) + '\n';
 }
 } // namespace bone

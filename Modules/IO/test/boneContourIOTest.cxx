@@ -64,6 +64,7 @@ MakeStack()
   const double first = slices[0].origin.dot(stack->GetNormal()), last = slices[2].origin.dot(stack->GetNormal());
   auto         axis = MakeContour(stack, first, { { -1, 0 }, { 0, 0.5 }, { 1, 0 } }, 2, 3, Spongy);
   axis.axis = true;
+  axis.clearance = { 9.0, 9.5, 9.25 };
   slices[0].contours = { MakeContour(stack, first, Circle(0, 0, 20, 30), 0, 0, Cortical),
                          MakeContour(stack, first, Circle(0, 0, 10, 20), 1, 1, Spongy),
                          MakeContour(stack, first, hole, 0, 2, Outside),
@@ -163,6 +164,10 @@ TEST_F(ContourIOTest, AStackIsReadAsWritten)
       EXPECT_EQ(a.contours[c].id, b.contours[c].id);
       EXPECT_EQ(a.contours[c].region, b.contours[c].region);
       EXPECT_EQ(a.contours[c].axis, b.contours[c].axis);
+      if (!a.contours[c].clearance.empty())
+      {
+        EXPECT_EQ(a.contours[c].clearance, b.contours[c].clearance);
+      }
     }
   }
 }
@@ -233,7 +238,7 @@ TEST_F(ContourIOTest, RefusesWhatHasNoPlanes)
 TEST_F(ContourIOTest, RefusesBrokenFiles)
 {
   EXPECT_THAT(ErrorOf([&] { ReadContours(Path("no.vtp")); }), HasSubstr("there is no such file"));
-  EXPECT_THAT(ErrorOfReading("c.txt", "text"), HasSubstr("must end in .vtp or .mrk.json"));
+  EXPECT_THAT(ErrorOfReading("c.txt", "text"), HasSubstr("is no image"));
   EXPECT_THAT(ErrorOfReading("c.vtp", "text"), HasSubstr("is no readable VTK poly data"));
   WriteContours(MakeStack(), Path("c.vtp"));
   const std::string good = ReadText("c.vtp");
@@ -257,6 +262,39 @@ TEST_F(ContourIOTest, ReadsSlicerCurvesInLpsAndRas)
   EXPECT_EQ(lps->GetSlices()[0].contours[0].points.size(), 4u);
   EXPECT_EQ(lps->GetSlices()[0].contours[0].points, ras->GetSlices()[0].contours[0].points);
   EXPECT_EQ(lps->GetSlices()[0].contours[0].region, Cortical);
+}
+
+TEST_F(ContourIOTest, ClosedContoursComeBackFromSlicerCurves)
+{
+  const auto stack = MakeStack();
+  WriteContours(stack, Path("c.mrk.json"));
+  const auto back = ReadContours(Path("c.mrk.json"));
+  ASSERT_EQ(back->GetSlices().size(), 2u); // the empty slice leaves no trace
+  EXPECT_NEAR(back->GetNormal().dot(stack->GetNormal()), 1.0, 1e-12);
+  for (std::size_t k : { 0, 2 })
+  {
+    std::vector<Contour> closed;
+    for (const Contour & contour : stack->GetSlices()[k].contours)
+    {
+      if (!contour.axis)
+      {
+        closed.push_back(contour);
+      }
+    }
+    const auto & found = back->GetSlices()[k / 2].contours;
+    ASSERT_EQ(found.size(), closed.size());
+    for (std::size_t c = 0; c < closed.size(); ++c)
+    {
+      EXPECT_EQ(found[c].layer, closed[c].layer);
+      EXPECT_EQ(found[c].region, closed[c].region);
+      EXPECT_EQ(found[c].id, closed[c].id);
+      ASSERT_EQ(found[c].points.size(), closed[c].points.size());
+      for (std::size_t i = 0; i < closed[c].points.size(); ++i)
+      {
+        EXPECT_NEAR((found[c].points[i] - closed[c].points[i]).norm(), 0.0, 1e-9);
+      }
+    }
+  }
 }
 
 TEST_F(ContourIOTest, SaysWhatIsWrongWithMarkups)
