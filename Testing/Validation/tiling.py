@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""Tiling of whole bones: are all meshes valid, and how do they look?
+
+    BONETK_DATA=... Testing/Validation/tiling.py BUILD_FOLDER [--check PROGRAM] [--only TEXT] [--sample N]
+
+makes contours and meshes of the real bones in BONETK_DATA and of phantoms at several slice steps and contour spacings
+and writes Documentation/validation/tiling.md. --check names an independent checker, called as PROGRAM MESH.vtu
+--label LABELS --label-value V --json OUT, which must exit 0 for a valid mesh; without it `bonetk validate` is asked.
+--only takes the cases whose name has TEXT in it, --sample every Nth one; both print and write no report. About an hour on
+two cores."""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve()
+REPORT = HERE.parents[2] / "Documentation" / "validation" / "tiling.md"
+SPACINGS = (4, 2, 8)
+
+
+def cases(data):
+    """(name, how to make CT and labels, label or None, slice step, axis)"""
+    real = []
+    if data:
+        hip = [f"{data}/hip_ct/hip_ct.nii.gz", f"{data}/hip_ct/hip_labels.nii.gz"]
+        for label, bone in ((1, "femur"), (2, "hip")):
+            for step in (1, 2, 3):
+                real.append((f"clinical {bone}, {step} mm", hip, label, step, "z"))
+        pelvis = [f"{data}/pelvis_ct_3mm/pelvis_ct.nii.gz", f"{data}/pelvis_ct_3mm/pelvis_labels.nii.gz"]
+        for label, bone in enumerate(("left femur", "right femur", "left hip", "right hip", "sacrum"), 1):
+            real.append((f"pelvis at 3 mm, {bone}", pelvis, label, 3, "z"))
+        tibia = [f"{data}/tibia_ct/tibia_ct.nii.gz", f"{data}/tibia_ct/tibia_labels.nii.gz"]
+        real.append(("tibia, 2 mm", tibia, 2, 2, "z"))
+        for shape in sorted(pathlib.Path(data, "femur_shapes").glob("*.ply")):
+            real.append((f"femur shape {shape.stem}, 3 mm", ["--surface", str(shape)], None, 3, "x"))
+    for bone in ("femur", "hemipelvis"):
+        for subject in range(1, 21):
+            real.append((f"phantom {bone} {subject}, 2 mm", ["--bone", bone, "--subject", str(subject)], None, 2, "z"))
+    return [(*case, spacing) for spacing in SPACINGS for case in real]
+
+
+class Validation:
+    def __init__(self, build, check):
+        self.bonetk = build / "Examples" / "bonetk" / "bonetk"
+        self.program = build / "Testing" / "Validation" / "boneTilingValidation"
+        self.check = check
+
+    def inputs(self, source, folder):
+        if not source[0].startswith("--"):
+            return source
+        ct = f"{folder}/ct.mha"
+        labels = f"{folder}/labels.nii.gz"
+        self.run([self.bonetk, "phantom", *source, "--spacing", "1", "-o", ct, "--labels", labels, "--quiet"])
+        return [ct, labels]
+
+    @staticmethod
+    def run(command):
+        return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=True)
+
+    def mesh(self, case):
+        name, source, label, step, axis, spacing = case
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                ct, labels = self.inputs(source, folder)
+                of_label = [] if label is None else ["--label", label]
+                contours, mesh = f"{folder}/c.vtp", f"{folder}/m.vtu"
+                self.run([self.bonetk, "contours", ct, "--labels", labels, *of_label, "--slice-step", step, "--axis", axis,
+                          "--contour-spacing", spacing, "--quiet", "--threads", 1, "-o", contours])
+                values = dict(line.split() for line in self.run([self.program, contours, mesh]).stdout.splitlines())
+                row = {key: float(value) for key, value in values.items()}
+                row.update(self.checked(mesh, labels, label, folder))
+            except subprocess.CalledProcessError as error:
+                row = {"valid": False, "error": (error.stderr or error.stdout).strip().splitlines()[-1][:300]}
+        return case, row
+
+    def checked(self, mesh, labels, label, folder):
+        if not self.check:
+            self.run([self.bonetk, "validate", mesh])
+            return {"valid": True}
+        of_label = ["--label", labels, "--label-value", label] if label is not None else []
+        done = subprocess.run([str(c) for c in ["/usr/bin/python3", self.check, mesh, *of_label, "--json",
+                                                 f"{folder}/check.json"]], capture_output=True, text=True)
+        report = json.loads(pathlib.Path(folder, "check.json").read_text())
+        found = report["info"]
+        inward = found.get("regions_inward", {})
+        bad = sum(r["bad_edges"] + r["pinched_vertices"] for r in inward.values())
+        return {"valid": done.returncode == 0 and bad == 0, "components": found["components"],
+                "dice": found.get("label_dice"), "error": "" if done.returncode == 0 else done.stdout.strip().splitlines()[-1][:300],
+                "inner": "/".join(str(r["components"]) for r in inward.values())}
+
+
+def table_row(case, row):
+    name, _, _, _, _, spacing = case
+    if "tetrahedra" not in row:
+        return f"| {name} | {spacing} | failed: {row['error']} |"
+    dice = f"{row['dice']:.3f}" if row.get("dice") else ""
+    return (f"| {name} | {spacing} | {'yes' if row['valid'] else 'NO ' + row.get('error', '')} | {row.get('components', '')} | "
+            f"{row.get('inner', '')} | {row['tetrahedra']:.0f} | {row['slabs']:.0f} | {row['filled']:.0f} | "
+            f"{row['left_out']:.0f} | {dice} | {row['mean_angle']:.0f} | {row['seconds']:.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--check")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--sample", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    options = parser.parse_args()
+    validation = Validation(options.build, options.check)
+    chosen = [c for c in cases(os.environ.get("BONETK_DATA")) if options.only in c[0]][::options.sample]
+    out = ["# Tiling\n", "Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled without CT; no smoothing.",
+           "Inner components: of the union of all regions from the second, third, … inward. Filled: slabs and ends filled by",
+           "overlaying the triangulations of their slices. Seconds are of one core.\n",
+           "| bone, slice step | spacing, mm | valid | components | inner | tetrahedra | groups | filled | left out | Dice | "
+           "mean least angle | s |", "|" + "---|" * 12]
+    invalid = 0
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for case, row in pool.map(validation.mesh, chosen):
+            invalid += not row["valid"]
+            out.append(table_row(case, row))
+            print(out[-1], flush=True)
+    out.append(f"\n{len(chosen) - invalid} of {len(chosen)} valid.")
+    print(out[-1].strip())
+    if options.only == "" and options.sample == 1:
+        REPORT.parent.mkdir(exist_ok=True)
+        REPORT.write_text("\n".join(out) + "\n")
+    sys.exit(1 if invalid else 0)
+
+
+if __name__ == "__main__":
+    main()
