@@ -3,7 +3,7 @@
  *=========================================================================*/
 
 // Measures contours followed from one start contour, for contours.py:
-//   boneContourValidation phantom NAME SUBJECT NOISE START [STEP [OUT]]   START: share of the bone's height, 0..1
+//   boneContourValidation phantom NAME SUBJECT NOISE START [STEP [PIXEL [OUT]]]   START: share of the bone's height
 //   boneContourValidation bone CT LABELS LABEL labels|contour [STEP [OUT]]
 // Both print `key value` lines; `slice` lines hold what was found slice by slice.
 
@@ -221,13 +221,14 @@ PrintAgreement(const Filter & filter, const ContourStack & found, const ContourS
 }
 
 void
-PrintTrueErrors(const PhantomModel & model, const ContourStack & found, double thickest)
+PrintTrueErrors(const PhantomModel & model, const ContourStack & found, double resolved)
 {
   Mean outer;
   Mean outerSigned;
   Mean inner;
   Mean innerSigned;
   Mean thin;
+  Mean thinSigned;
   for (const ContourSlice & slice : found.GetSlices())
   {
     for (const Contour & contour : slice.contours)
@@ -243,9 +244,10 @@ PrintTrueErrors(const PhantomModel & model, const ContourStack & found, double t
           continue;
         }
         const double d = model.Distance(PhantomModel::Endosteal, p);
-        if (model.CorticalThickness(p) < thickest)
+        if (model.CorticalThickness(p) < resolved)
         {
           thin.Add(std::abs(d));
+          thinSigned.Add(d);
           continue;
         }
         inner.Add(std::abs(d));
@@ -255,7 +257,8 @@ PrintTrueErrors(const PhantomModel & model, const ContourStack & found, double t
   }
   std::cout << "periosteal " << outer.Get() << "\nperiosteal_signed " << outerSigned.Get() << "\nendosteal "
             << inner.Get() << "\nendosteal_signed " << innerSigned.Get() << "\nendosteal_points " << inner.count
-            << "\nendosteal_thin " << thin.Get() << "\nendosteal_thin_points " << thin.count << '\n';
+            << "\nendosteal_thin " << thin.Get() << "\nendosteal_thin_signed " << thinSigned.Get()
+            << "\nendosteal_thin_points " << thin.count << '\n';
 }
 
 int
@@ -265,7 +268,8 @@ RunPhantom(int argc, char ** argv)
   auto       source = PhantomImageSource<CTImage>::New();
   source->SetModel(model);
   CTImage::SpacingType spacing;
-  spacing[0] = spacing[1] = 0.6;
+  const double pixel = argc > 7 ? std::atof(argv[7]) : 0.6;
+  spacing[0] = spacing[1] = pixel;
   spacing[2] = 1.0;
   source->SetSpacing(spacing);
   source->SetNoise(std::atof(argv[4]));
@@ -280,13 +284,13 @@ RunPhantom(int argc, char ** argv)
   filter->SetSliceStep(step);
   const double seconds = Follow(filter);
   std::cout << "seconds " << seconds << "\nslices " << filter->GetOutput()->GetSlices().size() << '\n';
-  PrintTrueErrors(*model, *filter->GetOutput(), 1.2);
+  PrintTrueErrors(*model, *filter->GetOutput(), 2.0 * pixel);
   PrintAgreement(*filter, *filter->GetOutput(), *all);
   PrintReport(*filter);
-  if (argc > 7)
+  if (argc > 8)
   {
-    WriteContours(filter->GetOutput(), argv[7]);
-    WriteImage(source->GetOutput(), std::string(argv[7]) + ".mha");
+    WriteContours(filter->GetOutput(), argv[8]);
+    WriteImage(source->GetOutput(), std::string(argv[8]) + ".mha");
   }
   return EXIT_SUCCESS;
 }
@@ -337,7 +341,7 @@ main(int argc, char ** argv)
     {
       return RunBone(argc, argv);
     }
-    std::cerr << "usage: boneContourValidation phantom NAME SUBJECT NOISE START [STEP [OUT]]\n"
+    std::cerr << "usage: boneContourValidation phantom NAME SUBJECT NOISE START [STEP [PIXEL [OUT]]]\n"
                  "       boneContourValidation bone CT LABELS LABEL labels|contour [STEP [OUT]]\n";
   }
   catch (const std::exception & error)

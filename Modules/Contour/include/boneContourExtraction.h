@@ -14,7 +14,7 @@ struct ExtractionParameters
 {
   SnakeParameters snake;
   LayerParameters layers;
-  double          edgeSmoothing{ 0.0 };     ///< Gaussian on the CT before edges are sought; 0: 0.7 pixel
+  double          edgeSmoothing{ 0.0 };     ///< Gaussian on the CT before edges are sought; 0: 0.5 pixel
   double          minimumSlope{ 40.0 };     ///< of an edge, HU/mm
   double          minimumArea{ 4.0 };       ///< of a contour
   double          boneThreshold{ 150.0 };   ///< what never reaches it is no bone

@@ -15,7 +15,8 @@ namespace bone
 {
 namespace
 {
-constexpr int Drawn = 1; // the body that was drawn
+constexpr int        Drawn = 1; // the body that was drawn
+constexpr const char EndsAtJoint[] = "a piece ends at a joint";
 
 // A plane to be followed.
 struct FinePlane
@@ -189,7 +190,7 @@ private:
       this->NoteChange(before, now, m_Fine[f]);
       if (!now.Any([this](int body) { return this->IsOurs(body); }))
       {
-        this->NoteEnd(before, f, direction);
+        this->NoteEnd(before, f, direction, m_Fine[f].event.find(EndsAtJoint) != std::string::npos);
         return now.Bodies();
       }
       this->Store(f, now);
@@ -271,7 +272,7 @@ private:
     }
     if (ends)
     {
-      AddEvent(plane.event, "a piece ends at a joint");
+      AddEvent(plane.event, EndsAtJoint);
     }
     if (touches)
     {
@@ -295,11 +296,11 @@ private:
   }
 
   void
-  NoteEnd(const BodyLabels & before, std::size_t f, int direction)
+  NoteEnd(const BodyLabels & before, std::size_t f, int direction, bool joint)
   {
     const std::size_t last = direction > 0 ? f - 1 : f + 1;
-    std::string       text = "the bone ends";
-    for (std::size_t g = f; std::abs(m_Fine[g].height - m_Fine[last].height) <= m_P.lookAhead;)
+    std::string       text = joint ? EndsAtJoint : "the bone ends";
+    for (std::size_t g = f; !joint && std::abs(m_Fine[g].height - m_Fine[last].height) <= m_P.lookAhead;)
     {
       const PlaneField plane = this->PlaneAt(m_Fine[g].height);
       if (before.Overlap(plane, m_P.threshold, [this](int body) { return this->IsOurs(body); }) > 0.5)

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneBoneLayers.h"
 
+#include "boneCorticalProfile.h"
 #include "boneSnake.h"
 
 #include <algorithm>
@@ -21,7 +22,11 @@ struct SurfaceSample
   Vector2 position;
   Vector2 inward;
   double  thickness;
+  // As measured on the profile:
+  CorticalEdges edges;
+  double        length; // of the profile, mm
 };
+constexpr double SharpestShare = 0.05;
 using SliceSamples = std::vector<std::vector<SurfaceSample>>; // by piece
 
 class LayerFinder
@@ -36,6 +41,7 @@ public:
     {
       m_Spacing[a] = pixel[a] / std::ceil(pixel[a] / 0.8);
     }
+    m_Rules = { m_Pixel, parameters.endostealThreshold, parameters.minimumContrast, parameters.solidLevel };
   }
 
   SliceSamples
@@ -66,8 +72,8 @@ private:
     return CoveringGrid({ polygon }, margin, polygon.front(), m_Spacing);
   }
 
-  double
-  CorticalDepth(const std::vector<double> & profile, double step) const;
+  CorticalProfile
+  ProfileAt(const PlaneField & plane, const DistanceField & depth, const SurfaceSample & sample, double step) const;
 
   std::vector<Polygon>
   Regularise(PlaneField & field, const PlaneField & allowed) const;
@@ -76,6 +82,7 @@ private:
   const LayerParameters & m_Parameters;
   double                  m_Pixel;
   Vector2                 m_Spacing;
+  CorticalRules           m_Rules;
 };
 
 SliceSamples
@@ -99,75 +106,96 @@ LayerFinder::MeasureThickness(const BoneSection & section) const
     const std::size_t   n = outline.size();
     const DistanceField depth =
       ComputeDistanceField({ outline }, this->GridAround(outline, m_Pixel), m_Parameters.maximumThickness + m_Pixel);
-    std::vector<std::vector<double>> profiles(n);
+    std::vector<CorticalProfile> profiles;
     for (std::size_t i = 0; i < n; ++i)
     {
       const Vector2 tangent = (outline[(i + 2) % n] - outline[(i + n - 2) % n]).normalized();
-      const Vector2 inward(-tangent.y(), tangent.x());
-      result[p].push_back({ outline[i], inward, 0.0 });
-      for (double d = 0.0; d <= m_Parameters.maximumThickness; d += step)
-      {
-        const Vector2 q = outline[i] + d * inward;
-        if (depth.distance.Sample(q) < d - 0.75 * m_Pixel)
-        {
-          break;
-        }
-        profiles[i].push_back(plane.Sample(q));
-      }
+      result[p].push_back({ outline[i], { -tangent.y(), tangent.x() }, 0.0, {}, 0.0 });
+      profiles.push_back(this->ProfileAt(plane, depth, result[p].back(), step));
     }
-    std::vector<double> mean;
     for (std::size_t i = 0; i < n; ++i)
     {
-      const auto & before = profiles[(i + n - 1) % n];
-      const auto & here = profiles[i];
-      const auto & after = profiles[(i + 1) % n];
-      mean = here;
-      for (std::size_t k = 0; k < std::min({ before.size(), here.size(), after.size() }); ++k)
+      const auto &    before = profiles[(i + n - 1) % n].values;
+      const auto &    after = profiles[(i + 1) % n].values;
+      CorticalProfile mean = profiles[i];
+      for (std::size_t k = 0; k < std::min({ before.size(), mean.values.size(), after.size() }); ++k)
       {
-        mean[k] = 0.25 * (before[k] + 2.0 * here[k] + after[k]);
+        mean.values[k] = 0.25 * (before[k] + 2.0 * mean.values[k] + after[k]);
       }
-      result[p][i].thickness = this->CorticalDepth(mean, step);
+      result[p][i].edges = FindCorticalEdges(mean, m_Rules);
+      result[p][i].length = static_cast<double>(mean.values.size()) * step - mean.lead * step;
     }
   }
   return result;
 }
 
-double
-LayerFinder::CorticalDepth(const std::vector<double> & profile, double step) const
+// Densities inward from a point of the outline, as far as it is the nearest, and a little outward.
+CorticalProfile
+LayerFinder::ProfileAt(const PlaneField &    plane,
+                       const DistanceField & depth,
+                       const SurfaceSample & sample,
+                       double                step) const
 {
-  const double least = m_Parameters.minimumDistance;
-  const auto   window = std::min(profile.size(), static_cast<std::size_t>(std::max(3.0, 3.0 * m_Pixel) / step) + 1);
-  if (window < 2)
+  CorticalProfile profile;
+  profile.step = step;
+  profile.lead = static_cast<int>(std::ceil(2.5 * m_Pixel / step));
+  for (int k = -profile.lead; k * step <= m_Parameters.maximumThickness; ++k)
   {
-    return least;
-  }
-  const auto   peak = std::max_element(profile.begin(), profile.begin() + static_cast<std::ptrdiff_t>(window));
-  const double solid = static_cast<double>(profile.size()) * step + m_Pixel;
-  double       threshold = m_Parameters.endostealThreshold;
-  if (!(threshold > 0.0))
-  {
-    std::vector<double> rest(peak, profile.end());
-    const auto          low = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 5);
-    std::nth_element(rest.begin(), low, rest.end());
-    if (*peak - *low < m_Parameters.minimumContrast)
+    const Vector2 q = sample.position + k * step * sample.inward;
+    if (k > 0 && depth.distance.Sample(q) < k * step - 0.75 * m_Pixel)
     {
-      return *low > m_Parameters.solidLevel ? solid : least;
+      break;
     }
-    threshold = 0.5 * (*peak + *low);
+    profile.values.push_back(plane.SampleCubic(q));
   }
-  if (*peak < threshold)
+  return profile;
+}
+
+// The blur of the CT's edges: that of the sharpest ones where the cortex is resolved, for surfaces that lie obliquely
+// in the slice look more blurred; or what is usual.
+double
+BlurOf(const std::vector<SliceSamples> & samples, double pixel)
+{
+  std::vector<double> blurs;
+  for (const SliceSamples & slice : samples)
   {
-    return least;
-  }
-  for (auto at = peak; at + 1 != profile.end(); ++at)
-  {
-    if (*(at + 1) < threshold)
+    for (const auto & piece : slice)
     {
-      const double fraction = (*at - threshold) / (*at - *(at + 1));
-      return std::max(least, (static_cast<double>(at - profile.begin()) + fraction) * step);
+      for (const SurfaceSample & sample : piece)
+      {
+        if (sample.edges.blur > 0.0)
+        {
+          blurs.push_back(sample.edges.blur);
+        }
+      }
     }
   }
-  return solid;
+  constexpr std::size_t enough = 50;
+  if (blurs.size() < enough)
+  {
+    return 0.45 * pixel;
+  }
+  const auto sharp = blurs.begin() + static_cast<std::ptrdiff_t>(SharpestShare * static_cast<double>(blurs.size()));
+  std::nth_element(blurs.begin(), sharp, blurs.end());
+  return *sharp;
+}
+
+// Depth of the endosteal contour under each sample; the blurred layer's middle stays where it is.
+void
+SetThickness(SliceSamples & slice, double blur, double least, double pixel)
+{
+  for (auto & piece : slice)
+  {
+    for (SurfaceSample & sample : piece)
+    {
+      const CorticalEdges & edges = sample.edges;
+      const double          half = 0.5 * ThicknessOfBlurredLayer(edges.inner - edges.outer, blur);
+      const double          depth = 0.5 * (edges.outer + edges.inner) + half;
+      sample.thickness = edges.kind == CorticalEdges::Kind::Solid   ? sample.length + pixel
+                         : edges.kind == CorticalEdges::Kind::Found ? std::max(least, depth)
+                                                                    : least;
+    }
+  }
 }
 
 // Closes and opens the region where `field` is positive with a disk, within the region where `allowed` is positive, and
@@ -422,6 +450,9 @@ FindInnerLayers(std::vector<BoneSection> & sections,
   const LayerFinder         finder(planes, pixel, parameters);
   std::vector<SliceSamples> samples(sections.size());
   parallel(sections.size(), [&](std::size_t k) { samples[k] = finder.MeasureThickness(sections[k]); });
+  const double blur = BlurOf(samples, pixel.maxCoeff());
+  parallel(sections.size(),
+           [&](std::size_t k) { SetThickness(samples[k], blur, parameters.minimumDistance, pixel.maxCoeff()); });
   samples = FilterThickness(sections, samples, parameters.smoothing, true, parallel);
   samples = FilterThickness(sections, samples, 0.7 * parameters.smoothing, false, parallel);
 

@@ -50,7 +50,7 @@ PlaneAround(const std::vector<Polygon> & loops, double height, double margin, co
 double
 Smoothing(const ExtractionParameters & parameters, const Vector2 & pixel)
 {
-  return parameters.edgeSmoothing > 0.0 ? parameters.edgeSmoothing : 0.7 * pixel.maxCoeff();
+  return parameters.edgeSmoothing > 0.0 ? parameters.edgeSmoothing : 0.5 * pixel.maxCoeff();
 }
 
 void
