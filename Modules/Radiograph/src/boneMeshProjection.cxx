@@ -42,7 +42,7 @@ public:
     , m_Options(options)
     , m_Density(cells, options)
     , m_Frame(RayFrame::Displaced(view))
-    , m_AddCell(options.portable ? projection::AddCellPortable : projection::SelectAddCell())
+    , m_AddCells(options.portable ? projection::AddCellsPortable : projection::SelectAddCells())
   {}
 
   void
@@ -56,19 +56,23 @@ private:
   void
   AddGeneral(std::size_t t, const projection::Band & band) const;
   void
-  AddProjected(std::size_t t, const projection::Band & band) const;
+  Append(std::size_t t, projection::CellGroup & group) const;
   void
   DrawBand(std::size_t bin, float * image) const;
 
-  /** Rows of a band: few enough for the cache, many enough that few cells lie in two. */
-  static constexpr int bandRows = 32;
+  /** Rows of a band: few enough for the cache and for the threads, many enough that few cells lie in two. */
+  int
+  BandRows() const
+  {
+    return std::clamp(m_Frame.Rows() / 8, 8, 64);
+  }
 
   const std::vector<Vector3> &  m_Points;
   const MeshArrays &            m_Cells;
   const MeshRadiographOptions & m_Options;
   CellDensity                   m_Density;
   RayFrame                      m_Frame;
-  projection::AddCellFunction   m_AddCell;
+  projection::AddCellsFunction  m_AddCells;
 
   std::vector<Vector3>     m_Projected; ///< column, row, s of each point
   std::vector<RowRange>    m_Rows;      ///< of each cell
@@ -129,8 +133,9 @@ Projector::Locate(std::size_t t)
 void
 Projector::FillBins()
 {
-  const std::size_t bins = (m_Frame.Rows() + bandRows - 1) / bandRows;
+  const std::size_t bins = (m_Frame.Rows() + BandRows() - 1) / BandRows();
   m_BinStart.assign(bins + 1, 0);
+  const int  bandRows = BandRows();
   const auto forEachBin = [&](const auto & function) {
     for (std::size_t t = 0; t < m_Rows.size(); ++t)
     {
@@ -151,22 +156,17 @@ Projector::FillBins()
 }
 
 void
-Projector::AddProjected(std::size_t t, const projection::Band & band) const
+Projector::Append(std::size_t t, projection::CellGroup & group) const
 {
-  projection::Cell cell;
   for (int i = 0; i < 4; ++i)
   {
     const Vector3 & p = m_Projected[m_Cells.tetrahedra[t][i]];
-    cell.column[i] = p[0];
-    cell.row[i] = p[1];
-    cell.s[i] = p[2];
+    group.column[i][group.count] = p[0];
+    group.row[i][group.count] = p[1];
+    group.s[i][group.count] = p[2];
   }
-  cell.coefficients = m_Density.Coefficients(t);
-  cell.degree = m_Density.Degree(t);
-  cell.scale = m_Options.scale;
-  cell.offset = m_Options.offset;
-  cell.parallel = m_Frame.IsParallel();
-  m_AddCell(cell, band);
+  group.degree = m_Density.Degree(t);
+  group.coefficients[group.count++] = m_Density.Coefficients(t);
 }
 
 /** Entry and exit depth of a ray, by the planes' lines at its pixel; entry <= exit where it misses. */
@@ -258,23 +258,38 @@ void
 Projector::DrawBand(std::size_t bin, float * image) const
 {
   const int              columns = m_Frame.Columns();
-  const int              firstRow = static_cast<int>(bin) * bandRows;
-  const int              endRow = std::min(m_Frame.Rows(), firstRow + bandRows);
+  const int              firstRow = static_cast<int>(bin) * BandRows();
+  const int              endRow = std::min(m_Frame.Rows(), firstRow + BandRows());
   const int              stride = columns + projection::lanes;
   std::vector<float>     sums(static_cast<std::size_t>(stride) * (endRow - firstRow), 0.0f);
   const projection::Band band{ sums.data(), stride, firstRow, endRow, columns };
+  projection::CellGroup group;
+  group.count = 0;
+  group.scale = m_Options.scale;
+  group.offset = m_Options.offset;
+  group.parallel = m_Frame.IsParallel();
+  const auto flush = [&]() {
+    if (group.count > 0)
+    {
+      m_AddCells(group, band);
+    }
+    group.count = 0;
+  };
   for (std::size_t i = m_BinStart[bin]; i < m_BinStart[bin + 1]; ++i)
   {
     const auto t = static_cast<std::size_t>(m_BinCells[i]);
-    if (m_Rows[t].path == Path::Kernel)
-    {
-      AddProjected(t, band);
-    }
-    else
+    if (m_Rows[t].path == Path::General)
     {
       AddGeneral(t, band);
+      continue;
     }
+    if (group.count == projection::groupSize || (group.count > 0 && group.degree != m_Density.Degree(t)))
+    {
+      flush();
+    }
+    Append(t, group);
   }
+  flush();
   for (int row = firstRow; row < endRow; ++row)
   {
     const float * from = sums.data() + static_cast<std::size_t>(row - firstRow) * stride;

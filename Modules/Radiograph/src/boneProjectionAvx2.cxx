@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneProjectionKernel.h"
 
-#ifdef BONE_PROJECTION_AVX2
+#ifdef BONE_PROJECTION_X86
 
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
@@ -20,9 +20,9 @@ namespace bone
 namespace projection
 {
 void
-AddCellAvx2(const Cell & cell, const Band & band)
+AddCellsAvx2(CellGroup & group, const Band & band)
 {
-  avx2::AddCell(cell, band);
+  avx2::AddCells(group, band);
 }
 } // namespace projection
 } // namespace bone

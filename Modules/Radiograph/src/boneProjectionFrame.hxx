@@ -10,6 +10,23 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
+/** One number of each cell of a group. */
+typedef double Group __attribute__((vector_size(groupSize * sizeof(double))));
+
+/** What has a value for each cell of a group. */
+struct GroupFrame
+{
+  Group c0, r0, s0;
+  Group halfWidth, halfHeight, halfDepth; ///< wc, wr, h
+  Group columns[2], rows[2];              ///< least and greatest of the vertices
+  Group kappa;
+  Group mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
+  Group volume;      ///< in the frame's units, signed
+  Group slope[4];    ///< v * slope + (mu0 + mu1 xi + mu2 eta) is a barycentric coordinate times 1 + kappa v
+  Group inPlane[4];  ///< |mu1| + |mu2|
+  Group depth[4][3]; ///< v of the face planes: constant, per column, per row
+};
+
 /** A column limit: column >= (left) or <= (right) at + perRow * (row - r0). */
 struct Limit
 {
@@ -20,13 +37,12 @@ struct Limit
 /** One cell in its frame, what does not depend on the degree. */
 struct Frame
 {
-  double c0, r0, s0;
-  double halfWidth, halfHeight, halfDepth; ///< wc, wr, h
+  double c0, r0;
+  double halfWidth, halfHeight;
   double kappa;
   int    firstRow, endRow; ///< rows in the band
   int    firstColumn, endColumn;
-  double mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
-  double depth[4][3]; ///< depths v of the face planes: constant, per column, per row; fronts first
+  double depth[4][3]; ///< as in GroupFrame, fronts first; where there are less than four, the last one again
   int    fronts;      ///< 1..3
   bool   steep;       ///< a plane is seen too nearly edge-on for single precision
   Limit  left[6], right[6];
@@ -38,11 +54,17 @@ Absolute(double x)
 {
   return x < 0 ? -x : x;
 }
-
-/** Largest integer not above x, within +-limit. */
-inline int
-Floor(double x, int limit)
+inline Group
+Absolute(Group x)
 {
+  return x < 0 ? -x : x;
+}
+
+/** Largest integer not above x, within bounds far beyond any detector. */
+inline int
+Floor(double x)
+{
+  constexpr int limit = 1 << 30;
   if (!(x > -limit))
   {
     return -limit;
@@ -56,57 +78,30 @@ Floor(double x, int limit)
 }
 
 inline void
-Range(const double (&x)[4], double & low, double & high)
+Load(const double (&from)[4][groupSize], Group (&to)[4])
 {
-  low = high = x[0];
+  static_assert(sizeof(from) == sizeof(to), "one vertex a vector");
+  __builtin_memcpy(to, from, sizeof(to));
+}
+
+inline void
+SetRange(const Group (&x)[4], Group (&range)[2], Group & centre, Group & half)
+{
+  range[0] = range[1] = x[0];
   for (int i = 1; i < 4; ++i)
   {
-    low = x[i] < low ? x[i] : low;
-    high = x[i] > high ? x[i] : high;
+    range[0] = x[i] < range[0] ? x[i] : range[0];
+    range[1] = x[i] > range[1] ? x[i] : range[1];
   }
+  centre = 0.5 * (range[0] + range[1]);
+  half = 0.5 * (range[1] - range[0]);
 }
 
-/** Centre, size and pixels of the cell; false where it meets no pixel of the band or is flat. */
-inline bool
-PlaceFrame(const Cell & cell, const Band & band, Frame & frame)
+/** The barycentric coordinates in the frame, from the vertices in it. */
+inline void
+SetBarycentric(const Group (&p)[4][3], GroupFrame & frame)
 {
-  double low[3], high[3];
-  Range(cell.column, low[0], high[0]);
-  Range(cell.row, low[1], high[1]);
-  Range(cell.s, low[2], high[2]);
-  constexpr int limit = 1 << 30;
-  const int     firstRow = Floor(low[1], limit) + (Floor(low[1], limit) < low[1] ? 1 : 0);
-  const int     endRow = Floor(high[1], limit) + 1;
-  const int     firstColumn = Floor(low[0], limit) + (Floor(low[0], limit) < low[0] ? 1 : 0);
-  const int     endColumn = Floor(high[0], limit) + 1;
-  frame.firstRow = firstRow < band.firstRow ? band.firstRow : firstRow;
-  frame.endRow = endRow > band.endRow ? band.endRow : endRow;
-  frame.firstColumn = firstColumn < 0 ? 0 : firstColumn;
-  frame.endColumn = endColumn > band.columns ? band.columns : endColumn;
-  frame.c0 = 0.5 * (low[0] + high[0]);
-  frame.r0 = 0.5 * (low[1] + high[1]);
-  frame.s0 = 0.5 * (low[2] + high[2]);
-  frame.halfWidth = 0.5 * (high[0] - low[0]);
-  frame.halfHeight = 0.5 * (high[1] - low[1]);
-  frame.halfDepth = 0.5 * (high[2] - low[2]);
-  frame.kappa = cell.parallel ? 0.0 : frame.halfDepth / frame.s0;
-  return frame.firstRow < frame.endRow && frame.firstColumn < frame.endColumn && frame.halfWidth > 0 &&
-         frame.halfHeight > 0 && frame.halfDepth > 0;
-}
-
-/** Barycentric coordinates in the frame; false for a flat cell. */
-inline bool
-SetBarycentric(const Cell & cell, Frame & frame)
-{
-  double p[4][3];
-  for (int i = 0; i < 4; ++i)
-  {
-    const double magnification = cell.parallel ? 1.0 : cell.s[i] / frame.s0;
-    p[i][0] = magnification * (cell.column[i] - frame.c0) / frame.halfWidth;
-    p[i][1] = magnification * (cell.row[i] - frame.r0) / frame.halfHeight;
-    p[i][2] = (cell.s[i] - frame.s0) / frame.halfDepth;
-  }
-  double e[3][3], normal[3][3];
+  Group e[3][3], normal[3][3];
   for (int i = 0; i < 3; ++i)
   {
     for (int k = 0; k < 3; ++k)
@@ -116,33 +111,85 @@ SetBarycentric(const Cell & cell, Frame & frame)
   }
   for (int i = 0; i < 3; ++i)
   {
-    const double(&u)[3] = e[(i + 1) % 3];
-    const double(&v)[3] = e[(i + 2) % 3];
+    const Group(&u)[3] = e[(i + 1) % 3];
+    const Group(&v)[3] = e[(i + 2) % 3];
     normal[i][0] = u[1] * v[2] - u[2] * v[1];
     normal[i][1] = u[2] * v[0] - u[0] * v[2];
     normal[i][2] = u[0] * v[1] - u[1] * v[0];
   }
-  const double volume = e[0][0] * normal[0][0] + e[0][1] * normal[0][1] + e[0][2] * normal[0][2];
-  if (!(Absolute(volume) > 0))
-  {
-    return false;
-  }
-  const double inverse = 1.0 / volume;
-  frame.mu[0][0] = 1;
-  frame.mu[1][0] = frame.mu[2][0] = frame.mu[3][0] = 0;
+  const Group none{};
+  frame.volume = e[0][0] * normal[0][0] + e[0][1] * normal[0][1] + e[0][2] * normal[0][2];
+  const Group inverse = 1.0 / frame.volume;
+  frame.mu[0][0] = none + 1.0;
+  frame.mu[1][0] = frame.mu[2][0] = frame.mu[3][0] = none;
   for (int i = 0; i < 3; ++i)
   {
-    double atCentre = 0;
+    Group atCentre = none;
     for (int k = 0; k < 3; ++k)
     {
-      frame.mu[k + 1][i + 1] = normal[i][k] * inverse;
-      atCentre -= normal[i][k] * inverse * p[0][k];
-      frame.mu[k + 1][0] -= normal[i][k] * inverse;
+      const Group gradient = normal[i][k] * inverse;
+      frame.mu[k + 1][i + 1] = gradient;
+      atCentre -= gradient * p[0][k];
+      frame.mu[k + 1][0] -= gradient;
     }
     frame.mu[0][i + 1] = atCentre;
     frame.mu[0][0] -= atCentre;
   }
-  return true;
+}
+
+/** Everything of GroupFrame. */
+inline void
+SetGroupFrame(const CellGroup & group, GroupFrame & frame)
+{
+  Group column[4], row[4], s[4];
+  Load(group.column, column);
+  Load(group.row, row);
+  Load(group.s, s);
+  SetRange(column, frame.columns, frame.c0, frame.halfWidth);
+  SetRange(row, frame.rows, frame.r0, frame.halfHeight);
+  Group range[2];
+  SetRange(s, range, frame.s0, frame.halfDepth);
+  const Group none{}, perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
+  const Group perDepth = 1.0 / frame.halfDepth, perS = group.parallel ? none : 1.0 / frame.s0;
+  frame.kappa = frame.halfDepth * perS;
+  Group p[4][3];
+  for (int i = 0; i < 4; ++i)
+  {
+    const Group magnification = group.parallel ? none + 1.0 : s[i] * perS;
+    p[i][0] = magnification * (column[i] - frame.c0) * perWidth;
+    p[i][1] = magnification * (row[i] - frame.r0) * perHeight;
+    p[i][2] = (s[i] - frame.s0) * perDepth;
+  }
+  SetBarycentric(p, frame);
+  for (int i = 0; i < 4; ++i)
+  {
+    frame.slope[i] = frame.kappa * frame.mu[0][i] - frame.mu[3][i];
+    frame.inPlane[i] = Absolute(frame.mu[1][i]) + Absolute(frame.mu[2][i]);
+    const Group inverse = -1.0 / frame.slope[i];
+    frame.depth[i][0] = frame.mu[0][i] * inverse;
+    frame.depth[i][1] = frame.mu[1][i] * inverse * perWidth;
+    frame.depth[i][2] = frame.mu[2][i] * inverse * perHeight;
+  }
+}
+
+/** Pixels of one cell of a group; false where it meets none of the band or is flat. */
+inline bool
+PlaceFrame(const GroupFrame & group, int member, const Band & band, Frame & frame)
+{
+  frame.c0 = group.c0[member];
+  frame.r0 = group.r0[member];
+  frame.halfWidth = group.halfWidth[member];
+  frame.halfHeight = group.halfHeight[member];
+  frame.kappa = group.kappa[member];
+  // Not from centre and half extent, which are rounded: a face that lies along a row must end there.
+  const int firstRow = -Floor(-group.rows[0][member]), endRow = Floor(group.rows[1][member]) + 1;
+  const int firstColumn = -Floor(-group.columns[0][member]), endColumn = Floor(group.columns[1][member]) + 1;
+  frame.firstRow = firstRow < band.firstRow ? band.firstRow : firstRow;
+  frame.endRow = endRow > band.endRow ? band.endRow : endRow;
+  frame.firstColumn = firstColumn < 0 ? 0 : firstColumn;
+  frame.endColumn = endColumn > band.columns ? band.columns : endColumn;
+  return frame.firstRow < frame.endRow && frame.firstColumn < frame.endColumn && frame.halfWidth > 0 &&
+         frame.halfHeight > 0 && group.halfDepth[member] > 0 && Absolute(group.volume[member]) > 0;
 }
 
 inline void
@@ -150,93 +197,111 @@ AddLimit(Frame & frame, double constant, double perColumn, double perRow, double
 {
   // constant + perColumn (c - c0) + perRow (r - r0) >= 0
   constexpr double tiny = 1e-30;
-  const double     slope = Absolute(perColumn) > tiny ? perColumn : tiny;
-  const double     at = frame.c0 - constant / slope;
-  if (slope > 0)
+  if (!(Absolute(perColumn) > tiny))
   {
-    frame.left[frame.lefts++] = { at - margin, -perRow / slope };
+    return;
+  }
+  const double inverse = -1.0 / perColumn, at = frame.c0 + constant * inverse;
+  if (perColumn > 0)
+  {
+    frame.left[frame.lefts++] = { at - margin, perRow * inverse };
   }
   else
   {
-    frame.right[frame.rights++] = { at + margin, -perRow / slope };
+    frame.right[frame.rights++] = { at + margin, perRow * inverse };
   }
 }
 
 /** Depths of the face planes and column limits; false where there is nothing to be seen. */
 inline bool
-SetPlanes(Frame & frame)
+SetPlanes(const GroupFrame & group, int member, Frame & frame)
 {
   // Seen more nearly edge-on than that (in units of the cell's size): not a matter of depth but of left and right.
   constexpr double edgeOn = 1e-10;
   constexpr double steep = 1e-3;
-  double           front[4][3], back[4][3];
+  int              order[4]; // fronts from the left, backs from the right
   int              fronts = 0, backs = 0;
   frame.lefts = frame.rights = 0;
   frame.steep = false;
   for (int i = 0; i < 4; ++i)
   {
-    // v * slope + (mu0 + mu1 xi + mu2 eta) >= 0 inside
-    const double slope = frame.kappa * frame.mu[0][i] - frame.mu[3][i];
-    const double inPlane = Absolute(frame.mu[1][i]) + Absolute(frame.mu[2][i]);
-    const double perColumn = frame.mu[1][i] / frame.halfWidth, perRow = frame.mu[2][i] / frame.halfHeight;
+    const double slope = group.slope[i][member], inPlane = group.inPlane[i][member];
     if (Absolute(slope) <= edgeOn * inPlane)
     {
-      AddLimit(frame, frame.mu[0][i], perColumn, perRow, 0.0);
+      AddLimit(frame,
+               group.mu[0][i][member],
+               group.mu[1][i][member] / frame.halfWidth,
+               group.mu[2][i][member] / frame.halfHeight,
+               0.0);
       continue;
     }
     frame.steep = frame.steep || Absolute(slope) < steep * inPlane;
-    double(&plane)[3] = slope < 0 ? front[fronts++] : back[backs++];
-    plane[0] = -frame.mu[0][i] / slope;
-    plane[1] = -perColumn / slope;
-    plane[2] = -perRow / slope;
+    order[slope < 0 ? fronts++ : 3 - backs++] = i;
   }
   if (fronts == 0 || backs == 0)
   {
     return false;
   }
+  for (int i = fronts; i < 4 - backs; ++i)
+  {
+    order[i] = order[3];
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      frame.depth[i][k] = group.depth[order[i]][k][member];
+    }
+  }
   constexpr double margin = 1e-3;
   for (int f = 0; f < fronts; ++f)
   {
-    for (int b = 0; b < backs; ++b)
+    for (int b = 4 - backs; b < 4; ++b)
     {
-      AddLimit(frame, front[f][0] - back[b][0], front[f][1] - back[b][1], front[f][2] - back[b][2], margin);
+      AddLimit(frame,
+               frame.depth[f][0] - frame.depth[b][0],
+               frame.depth[f][1] - frame.depth[b][1],
+               frame.depth[f][2] - frame.depth[b][2],
+               margin);
     }
   }
   frame.fronts = fronts;
-  for (int i = 0; i < 4; ++i)
-  {
-    const double(&plane)[3] = i < fronts ? front[i] : back[i - fronts < backs ? i - fronts : backs - 1];
-    for (int k = 0; k < 3; ++k)
-    {
-      frame.depth[i][k] = plane[k];
-    }
-  }
   return true;
 }
 
-/** Columns [first, end) that the cell may cover in a row. */
-inline void
-RowColumns(const Frame & frame, double dr, int & first, int & end)
+/** The columns that the cell may cover in each of some rows. */
+struct RowRuns
 {
-  double low = frame.firstColumn, high = frame.endColumn - 1;
+  int first[lanes];
+  int count[lanes]; ///< 0 or less: none
+};
+
+inline void
+SetRowRuns(const Frame & frame, int firstRow, RowRuns & runs)
+{
+  using Rows __attribute__((vector_size(lanes * sizeof(double)))) = double;
+  using Columns __attribute__((vector_size(lanes * sizeof(int)))) = int;
+  const Rows index = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  const Rows dr = index + (firstRow - frame.r0), none{};
+  Rows       low = none + static_cast<double>(frame.firstColumn), high = none + (frame.endColumn - 1.0);
   for (int i = 0; i < frame.lefts; ++i)
   {
-    const double x = frame.left[i].at + frame.left[i].perRow * dr;
+    const Rows x = frame.left[i].at + frame.left[i].perRow * dr;
     low = x > low ? x : low;
   }
   for (int i = 0; i < frame.rights; ++i)
   {
-    const double x = frame.right[i].at + frame.right[i].perRow * dr;
+    const Rows x = frame.right[i].at + frame.right[i].perRow * dr;
     high = x < high ? x : high;
   }
-  if (!(low <= high))
-  {
-    first = end = 0;
-    return;
-  }
-  first = static_cast<int>(low);
-  first += first < low ? 1 : 0;
-  end = static_cast<int>(high) + 1;
+  // What lies outside [firstColumn, endColumn) is none, whatever it is cut to.
+  low = low < frame.endColumn + none ? low : frame.endColumn + none;
+  high = high > frame.firstColumn - 1 + none ? high : frame.firstColumn - 1 + none;
+  const Columns down = __builtin_convertvector(low, Columns);
+  const Columns first = __builtin_convertvector(low > __builtin_convertvector(down, Rows) ? none + 1 : none, Columns) + down;
+  const Columns count = __builtin_convertvector(high + 1, Columns) - first;
+  __builtin_memcpy(runs.first, &first, sizeof(first));
+  __builtin_memcpy(runs.count, &count, sizeof(count));
 }
 
 } // namespace BONE_PROJECTION_NAMESPACE

@@ -13,14 +13,18 @@ namespace projection
 /** Pixels that are computed at once; a band's rows are padded by as many. */
 constexpr int lanes = 8;
 
-/** A tetrahedron as the view sees it, wholly between source and detector. */
-struct Cell
+/** Cells whose set-up is done at once. */
+constexpr int groupSize = 4;
+
+/** Tetrahedra of one degree as the view sees them, wholly between source and detector. */
+struct CellGroup
 {
-  double         column[4]; ///< of the projected vertices, pixels
-  double         row[4];
-  double         s[4]; ///< ray parameter of the vertices, see RayFrame
-  const double * coefficients;
+  int            count; ///< 1..groupSize
   int            degree;
+  double         column[4][groupSize]; ///< of the projected vertices, pixels
+  double         row[4][groupSize];
+  double         s[4][groupSize]; ///< ray parameter of the vertices, see RayFrame
+  const double * coefficients[groupSize];
   double         scale; ///< scale * density + offset is integrated
   double         offset;
   bool           parallel;
@@ -36,21 +40,23 @@ struct Band
   int            columns;
 };
 
-/** Adds one tetrahedron's integrals to the band. */
-using AddCellFunction = void (*)(const Cell &, const Band &);
+/** Adds the tetrahedra's integrals to the band, in order. What is beyond `count` is filled by the function. */
+using AddCellsFunction = void (*)(CellGroup & group, const Band & band);
 
 void
-AddCellPortable(const Cell & cell, const Band & band);
+AddCellsPortable(CellGroup & group, const Band & band);
 
 #if defined(__x86_64__) && defined(__GNUC__)
-#define BONE_PROJECTION_AVX2
+#define BONE_PROJECTION_X86
 void
-AddCellAvx2(const Cell & cell, const Band & band);
+AddCellsAvx2(CellGroup & group, const Band & band);
+void
+AddCellsAvx512(CellGroup & group, const Band & band);
 #endif
 
 /** The fastest one that this processor can run. */
-AddCellFunction
-SelectAddCell();
+AddCellsFunction
+SelectAddCells();
 } // namespace projection
 } // namespace bone
 

@@ -56,7 +56,7 @@ constexpr double factorial[] = { 1, 1, 2, 6, 24, 120, 720, 5040, 40320 };
 template <int N>
 struct Monomials
 {
-  double q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
+  Group q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
 };
 
 /** From Bernstein coefficients (`in`, of degree D) to monomials: the coefficient of X^a Y^b z^k is a multinomial times
@@ -65,9 +65,9 @@ template <int N, int D>
 struct Blossom
 {
   static void
-  Run(const double * in, const double (&mu)[4][4], int next, int (&exponent)[4], Monomials<N> & result)
+  Run(const Group * in, const Group (&mu)[4][4], int next, int (&exponent)[4], Monomials<N> & result)
   {
-    double out[CoefficientCount(D - 1)];
+    Group out[CoefficientCount(D - 1)];
     for (int w = next; w < 4; ++w)
     {
       for (int p = 0; p < CoefficientCount(D - 1); ++p)
@@ -86,7 +86,7 @@ template <int N>
 struct Blossom<N, 0>
 {
   static void
-  Run(const double * in, const double (&)[4][4], int, int (&exponent)[4], Monomials<N> & result)
+  Run(const Group * in, const Group (&)[4][4], int, int (&exponent)[4], Monomials<N> & result)
   {
     const double multinomial = factorial[N] / (factorial[exponent[0]] * factorial[exponent[1]] *
                                                factorial[exponent[2]] * factorial[exponent[3]]);
@@ -94,11 +94,13 @@ struct Blossom<N, 0>
   }
 };
 
-/** The density of one cell: A[b][k * (N + 1) + a]. */
+/** The densities of a group: A[b][k * (N + 1) + a], and how much rounding may grow: the sum of the coefficients'
+ * magnitudes over the largest magnitude of a control value. */
 template <int N>
-struct RayPolynomial
+struct RayPolynomials
 {
-  double a[N + 1][(N + 1) * (N + 1)];
+  Group a[N + 1][(N + 1) * (N + 1)];
+  Group growth;
 };
 
 template <typename TReal>
@@ -112,13 +114,13 @@ template <typename TReal, int N>
 class RowPolynomial
 {
 public:
-  explicit RowPolynomial(const RayPolynomial<N> & density)
+  RowPolynomial(const RayPolynomials<N> & densities, int member)
   {
     for (int b = 0; b <= N; ++b)
     {
       for (int j = 0; j < blocks * lanes; ++j)
       {
-        m_A[b][j / lanes][j % lanes] = j < size ? static_cast<TReal>(density.a[b][j]) : TReal(0);
+        m_A[b][j / lanes][j % lanes] = j < size ? static_cast<TReal>(densities.a[b][j][member]) : TReal(0);
       }
     }
   }
@@ -274,65 +276,114 @@ AddRow(const TReal (&start)[4],
 
 template <typename TReal, int N, int TFronts>
 void
-AddRows(const Frame & frame, const RayPolynomial<N> & density, const Band & band)
+AddRows(const Frame & frame, const RowPolynomial<TReal, N> & polynomial, const Band & band)
 {
   using Polynomial = RowPolynomial<TReal, N>;
-  const Polynomial polynomial(density);
-  TReal            step[4];
+  using Planes __attribute__((vector_size(4 * sizeof(double)))) = double;
+  using RealPlanes __attribute__((vector_size(4 * sizeof(TReal)))) = TReal;
+  Planes constant, perColumn, perRow;
+  TReal  step[4];
   for (int i = 0; i < 4; ++i)
   {
+    constant[i] = frame.depth[i][0];
+    perColumn[i] = frame.depth[i][1];
+    perRow[i] = frame.depth[i][2];
     step[i] = static_cast<TReal>(frame.depth[i][1]);
   }
   const double xiPerColumn = 1.0 / frame.halfWidth, etaPerRow = 1.0 / frame.halfHeight;
-  for (int r = frame.firstRow; r < frame.endRow; ++r)
+  for (int block = frame.firstRow; block < frame.endRow; block += lanes)
   {
-    const double dr = r - frame.r0;
-    int          first, end;
-    RowColumns(frame, dr, first, end);
-    if (first >= end)
+    RowRuns runs;
+    SetRowRuns(frame, block, runs);
+    const int rows = frame.endRow - block < lanes ? frame.endRow - block : lanes;
+    for (int j = 0; j < rows; ++j)
     {
-      continue;
+      if (runs.count[j] <= 0)
+      {
+        continue;
+      }
+      const int        r = block + j, first = runs.first[j];
+      const double     dr = r - frame.r0, dc = first - frame.c0;
+      const RealPlanes at = __builtin_convertvector(constant + perColumn * dc + perRow * dr, RealPlanes);
+      TReal            start[4], poly[Polynomial::blocks * lanes];
+      __builtin_memcpy(start, &at, sizeof(at));
+      polynomial.At(static_cast<TReal>(dr * etaPerRow), poly);
+      AddRow<TReal, N, TFronts>(start,
+                                step,
+                                poly,
+                                static_cast<TReal>(dc * xiPerColumn),
+                                static_cast<TReal>(xiPerColumn),
+                                static_cast<TReal>(frame.kappa),
+                                runs.count[j],
+                                band.data + (r - band.firstRow) * band.stride + first);
     }
-    const double dc = first - frame.c0;
-    TReal        start[4], poly[Polynomial::blocks * lanes];
-    for (int i = 0; i < 4; ++i)
-    {
-      start[i] = static_cast<TReal>(frame.depth[i][0] + frame.depth[i][1] * dc + frame.depth[i][2] * dr);
-    }
-    polynomial.At(static_cast<TReal>(dr * etaPerRow), poly);
-    AddRow<TReal, N, TFronts>(start,
-                              step,
-                              poly,
-                              static_cast<TReal>(dc * xiPerColumn),
-                              static_cast<TReal>(xiPerColumn),
-                              static_cast<TReal>(frame.kappa),
-                              end - first,
-                              band.data + (r - band.firstRow) * band.stride + first);
   }
 }
 
-/** The density times h along the rays of the frame. Returns the sum of the coefficients' magnitudes over the largest
- * magnitude of a control value: how much rounding may grow. */
-template <int N>
-double
-SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<N> & density)
+/** Rows of four become columns. */
+inline void
+Transpose(const Group (&from)[groupSize], Group * to)
 {
-  double control[CoefficientCount(N)];
-  double largest = 0;
-  for (int p = 0; p < CoefficientCount(N); ++p)
+  const Group a = __builtin_shufflevector(from[0], from[1], 0, 4, 2, 6);
+  const Group b = __builtin_shufflevector(from[0], from[1], 1, 5, 3, 7);
+  const Group c = __builtin_shufflevector(from[2], from[3], 0, 4, 2, 6);
+  const Group d = __builtin_shufflevector(from[2], from[3], 1, 5, 3, 7);
+  to[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  to[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  to[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  to[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+/** Control values times h of the cells of a group. */
+template <int N>
+void
+LoadControl(const CellGroup & group, Group halfDepth, Group (&control)[CoefficientCount(N)])
+{
+  constexpr int count = CoefficientCount(N);
+  const Group   scale = halfDepth * group.scale, offset = halfDepth * group.offset;
+  for (int p = 0; p + groupSize <= count; p += groupSize)
   {
-    control[p] = frame.halfDepth * (cell.scale * cell.coefficients[p] + cell.offset);
-    largest = Absolute(control[p]) > largest ? Absolute(control[p]) : largest;
+    Group rows[groupSize];
+    for (int g = 0; g < groupSize; ++g)
+    {
+      __builtin_memcpy(rows + g, group.coefficients[g] + p, sizeof(Group));
+    }
+    Transpose(rows, control + p);
+  }
+  for (int p = count - count % groupSize; p < count; ++p)
+  {
+    for (int g = 0; g < groupSize; ++g)
+    {
+      control[p][g] = group.coefficients[g][p];
+    }
+  }
+  for (Group & value : control)
+  {
+    value = scale * value + offset;
+  }
+}
+
+/** The densities times h along the rays of each cell's frame. */
+template <int N>
+void
+SetDensities(const CellGroup & group, const GroupFrame & frame, RayPolynomials<N> & densities)
+{
+  Group control[CoefficientCount(N)], largest{};
+  LoadControl<N>(group, frame.halfDepth, control);
+  for (const Group & value : control)
+  {
+    const Group magnitude = Absolute(value);
+    largest = magnitude > largest ? magnitude : largest;
   }
   Monomials<N> monomials;
   int          exponent[4] = { 0, 0, 0, 0 };
   Blossom<N, N>::Run(control, frame.mu, 0, exponent, monomials);
-  double sum = 0;
+  Group sum{};
   for (int b = 0; b <= N; ++b)
   {
     for (int a = 0; a <= N; ++a)
     {
-      double inZ[N + 1] = {};
+      Group inZ[N + 1] = {};
       for (int k = 0; k <= N - a - b; ++k)
       {
         inZ[k] = monomials.q[a][b][k];
@@ -346,60 +397,75 @@ SetDensity(const Cell & cell, const Frame & frame, RayPolynomial<N> & density)
       }
       for (int k = 0; k <= N; ++k)
       {
-        density.a[b][k * (N + 1) + a] = inZ[k];
+        densities.a[b][k * (N + 1) + a] = inZ[k];
         sum += Absolute(inZ[k]);
       }
     }
   }
-  return largest > 0 ? sum / largest : 0;
+  densities.growth = largest > 0 ? sum / largest : largest;
 }
 
 template <typename TReal, int N>
 void
-AddInPrecision(const Frame & frame, const RayPolynomial<N> & density, const Band & band)
+AddInPrecision(const Frame & frame, const RowPolynomial<TReal, N> & polynomial, const Band & band)
 {
   switch (frame.fronts)
   {
     case 1:
-      AddRows<TReal, N, 1>(frame, density, band);
+      AddRows<TReal, N, 1>(frame, polynomial, band);
       break;
     case 2:
-      AddRows<TReal, N, 2>(frame, density, band);
+      AddRows<TReal, N, 2>(frame, polynomial, band);
       break;
     default:
-      AddRows<TReal, N, 3>(frame, density, band);
+      AddRows<TReal, N, 3>(frame, polynomial, band);
   }
 }
 
 template <int N>
 void
-AddOfDegree(const Cell & cell, const Band & band)
+AddOfDegree(CellGroup & group, const Band & band)
 {
-  Frame frame;
-  if (!PlaceFrame(cell, band, frame) || !SetBarycentric(cell, frame) || !SetPlanes(frame))
-  {
-    return;
-  }
-  RayPolynomial<N> density;
   constexpr double largestGrowth = 64;
-  const double     growth = SetDensity<N>(cell, frame, density);
-  if (frame.steep || !(growth <= largestGrowth))
+  GroupFrame       groupFrame;
+  SetGroupFrame(group, groupFrame);
+  RayPolynomials<N> densities;
+  SetDensities<N>(group, groupFrame, densities);
+  for (int g = 0; g < group.count; ++g)
   {
-    AddInPrecision<double, N>(frame, density, band);
-  }
-  else
-  {
-    AddInPrecision<float, N>(frame, density, band);
+    Frame frame;
+    if (!PlaceFrame(groupFrame, g, band, frame) || !SetPlanes(groupFrame, g, frame))
+    {
+      continue;
+    }
+    if (frame.steep || !(densities.growth[g] <= largestGrowth))
+    {
+      AddInPrecision<double, N>(frame, RowPolynomial<double, N>(densities, g), band);
+    }
+    else
+    {
+      AddInPrecision<float, N>(frame, RowPolynomial<float, N>(densities, g), band);
+    }
   }
 }
 
 inline void
-AddCell(const Cell & cell, const Band & band)
+AddCells(CellGroup & group, const Band & band)
 {
-  constexpr AddCellFunction byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
-                                           AddOfDegree<3>, AddOfDegree<4>, AddOfDegree<5>,
-                                           AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
-  byDegree[cell.degree](cell, band);
+  for (int g = group.count; g < groupSize; ++g)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      group.column[i][g] = group.column[i][0];
+      group.row[i][g] = group.row[i][0];
+      group.s[i][g] = group.s[i][0];
+    }
+    group.coefficients[g] = group.coefficients[0];
+  }
+  constexpr AddCellsFunction byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
+                                            AddOfDegree<3>, AddOfDegree<4>, AddOfDegree<5>,
+                                            AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
+  byDegree[group.degree](group, band);
 }
 } // namespace BONE_PROJECTION_NAMESPACE
 } // namespace projection

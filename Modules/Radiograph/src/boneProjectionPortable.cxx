@@ -3,6 +3,11 @@
  *=========================================================================*/
 #include "boneProjectionKernel.h"
 
+#if !defined(__clang__)
+// Vectors are handed over within this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 #define BONE_PROJECTION_NAMESPACE portable
 #include "boneProjectionKernel.hxx"
 
@@ -11,21 +16,25 @@ namespace bone
 namespace projection
 {
 void
-AddCellPortable(const Cell & cell, const Band & band)
+AddCellsPortable(CellGroup & group, const Band & band)
 {
-  portable::AddCell(cell, band);
+  portable::AddCells(group, band);
 }
 
-AddCellFunction
-SelectAddCell()
+AddCellsFunction
+SelectAddCells()
 {
-#ifdef BONE_PROJECTION_AVX2
+#ifdef BONE_PROJECTION_X86
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma"))
+  {
+    return AddCellsAvx512;
+  }
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
   {
-    return AddCellAvx2;
+    return AddCellsAvx2;
   }
 #endif
-  return AddCellPortable;
+  return AddCellsPortable;
 }
 } // namespace projection
 } // namespace bone

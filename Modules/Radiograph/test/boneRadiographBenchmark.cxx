@@ -111,6 +111,6 @@ BENCHMARK(Projection)
   ->Args({ 6000, 3 })
   ->Args({ 300000, 3 })
   ->Unit(benchmark::kMillisecond)
-  ->UseRealTime();
+  ->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(Voxels)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Walk)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->UseRealTime();
