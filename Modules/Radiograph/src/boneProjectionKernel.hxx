@@ -308,6 +308,8 @@ AddRows(const Frame & frame, const RowPolynomial<TReal, N> & polynomial, const B
       TReal            start[4], poly[Polynomial::blocks * lanes];
       __builtin_memcpy(start, &at, sizeof(at));
       polynomial.At(static_cast<TReal>(dr * etaPerRow), poly);
+      // Broadcast from memory as they are needed: to permute them out of registers takes longer.
+      __asm__ volatile("" : "+m"(start), "+m"(poly));
       AddRow<TReal, N, TFronts>(start,
                                 step,
                                 poly,
