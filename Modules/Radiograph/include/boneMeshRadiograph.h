@@ -41,14 +41,26 @@ struct MeshRadiographOptions
  * front, exit at the largest back depth, integral by the Gauss-Legendre rule that is exact for the degree. Single
  * precision inside with depths relative to the cell, double in the set-up and for cells that are ill-conditioned seen
  * from the source; cells that reach behind the source, near it, or through the detector go through a general path. Uses
- * AVX2 where the processor has it. Error about 1e-6 of the image's largest value. */
+ * AVX2 or AVX-512 where the processor has it. `images` has one image for each of `views`; these share one loop, so that
+ * small views keep all threads busy. Error about 1e-6 of the image's largest value. */
 void
+ProjectMesh(const std::vector<Vector3> &            points,
+            const MeshArrays &                      cells,
+            const std::vector<XRayGeometry::View> & views,
+            const MeshRadiographOptions &           options,
+            const LoopRunner &                      loops,
+            const std::vector<float *> &            images);
+
+inline void
 ProjectMesh(const std::vector<Vector3> &  points,
             const MeshArrays &            cells,
             const XRayGeometry::View &    view,
             const MeshRadiographOptions & options,
             const LoopRunner &            loops,
-            float *                       image);
+            float *                       image)
+{
+  ProjectMesh(points, cells, std::vector<XRayGeometry::View>{ view }, options, loops, std::vector<float *>{ image });
+}
 
 /** \brief Walks each ray from face neighbour to face neighbour, in double precision.
  *

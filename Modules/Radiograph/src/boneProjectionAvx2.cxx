@@ -15,22 +15,20 @@
 #define BONE_PROJECTION_NAMESPACE avx2
 #include "boneProjectionKernel.hxx"
 
-namespace bone
-{
-namespace projection
-{
-void
-AddCellsAvx2(CellGroup & group, const Band & band)
-{
-  avx2::AddCells(group, band);
-}
-} // namespace projection
-} // namespace bone
+#include "boneDerivativeKernel.hxx"
 
 #if defined(__clang__)
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
+
+namespace bone
+{
+namespace projection
+{
+const Kernels avx2Kernels = { avx2::AddCells, avx2::DeriveCells, avx2::AdjoinCells };
+} // namespace projection
+} // namespace bone
 
 #endif

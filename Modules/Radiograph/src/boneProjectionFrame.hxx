@@ -10,6 +10,79 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
+constexpr int
+CoefficientCount(int degree)
+{
+  return (degree + 1) * (degree + 2) * (degree + 3) / 6;
+}
+
+/** Where exponents (i, j+1, k, l), (i, j, k+1, l) and (one further on) (i, j, k, l+1) of a degree stand, for each
+ * (i, j, k, l) of the degree below: the position depends on j+k+l, k+l and l alone. (i+1, j, k, l) stays in place. */
+struct Raise
+{
+  int second[CoefficientCount(7)]{};
+  int third[CoefficientCount(7)]{};
+  constexpr Raise()
+  {
+    int p = 0;
+    for (int jkl = 0; jkl <= 7; ++jkl)
+    {
+      for (int kl = 0; kl <= jkl; ++kl)
+      {
+        for (int l = 0; l <= kl; ++l, ++p)
+        {
+          const int layer = (jkl + 1) * (jkl + 2) * (jkl + 3) / 6;
+          second[p] = layer + kl * (kl + 1) / 2 + l;
+          third[p] = layer + (kl + 1) * (kl + 2) / 2 + l;
+        }
+      }
+    }
+  }
+};
+constexpr Raise raise;
+
+constexpr double factorial[] = { 1, 1, 2, 6, 24, 120, 720, 5040, 40320 };
+
+template <typename TReal>
+struct Vector
+{
+  typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
+};
+
+/** out[0..lanes) += value. */
+inline void
+Accumulate(float * out, const Vector<float>::Type & value)
+{
+  Vector<float>::Type sum;
+  __builtin_memcpy(&sum, out, sizeof(sum));
+  sum += value;
+  __builtin_memcpy(out, &sum, sizeof(sum));
+}
+inline void
+Accumulate(float * out, const Vector<double>::Type & value)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    out[i] += static_cast<float>(value[i]);
+  }
+}
+
+/** Fills a group up, with its first member: the set-up is done for all. */
+inline void
+Complete(CellGroup & group)
+{
+  for (int g = group.count; g < groupSize; ++g)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      group.column[i][g] = group.column[i][0];
+      group.row[i][g] = group.row[i][0];
+      group.s[i][g] = group.s[i][0];
+    }
+    group.coefficients[g] = group.coefficients[0];
+  }
+}
+
 /** One number of each cell of a group. */
 typedef double Group __attribute__((vector_size(groupSize * sizeof(double))));
 
@@ -43,6 +116,7 @@ struct Frame
   int    firstRow, endRow; ///< rows in the band
   int    firstColumn, endColumn;
   double depth[4][3]; ///< as in GroupFrame, fronts first; where there are less than four, the last one again
+  int    face[4];     ///< the vertex opposite to each of these planes
   int    fronts;      ///< 1..3
   bool   steep;       ///< a plane is seen too nearly edge-on for single precision
   Limit  left[6], right[6];
@@ -248,6 +322,7 @@ SetPlanes(const GroupFrame & group, int member, Frame & frame)
   }
   for (int i = 0; i < 4; ++i)
   {
+    frame.face[i] = order[i];
     for (int k = 0; k < 3; ++k)
     {
       frame.depth[i][k] = group.depth[order[i]][k][member];

@@ -40,23 +40,54 @@ struct Band
   int            columns;
 };
 
-/** Adds the tetrahedra's integrals to the band, in order. What is beyond `count` is filled by the function. */
-using AddCellsFunction = void (*)(CellGroup & group, const Band & band);
+/** What is derived from a group's integrals I beside I itself. For a displacement of the cell's vertices j by w_j,
+ * dI = sum over i = 1..3, j = 0..3 of (gradient of barycentric coordinate i) . w_j times a function K_ij of the pixel. */
+struct Derivatives
+{
+  int                    shapeModes;
+  const double *         shape[groupSize]; ///< of each cell: modes x 3 x 4, gradient i . w_j
+  int                    densityModes;
+  const double * const * density; ///< coefficients of each mode
+  std::ptrdiff_t         coefficient[groupSize]; ///< where each cell's begin
+  std::ptrdiff_t         plane;                  ///< floats in the band from one derivative to the next
+  double *               scratch;                ///< DerivativeScratch() numbers
+};
 
-void
-AddCellsPortable(CellGroup & group, const Band & band);
+constexpr std::size_t
+DerivativeScratch(int shapeModes, int densityModes)
+{
+  return static_cast<std::size_t>(shapeModes) * 12 + static_cast<std::size_t>(densityModes) * 165;
+}
+
+/** Sums over the pixels, of which the band holds the weights. */
+struct Adjoint
+{
+  double * basis[groupSize];     ///< of each cell: weight times integral of each Bernstein polynomial; not scaled
+  double * positions[groupSize]; ///< of each cell or null: weight times K_ij, 3 x 4
+};
+
+/** Each takes 1..groupSize tetrahedra of one degree; what is beyond `count` is filled by the function. */
+struct Kernels
+{
+  /** Adds the tetrahedra's integrals to the band, in order. */
+  void (*add)(CellGroup & group, const Band & band);
+  /** The same, and derivatives by shape modes and by density modes to the planes that follow. */
+  void (*derive)(CellGroup & group, const Derivatives & derivatives, const Band & band);
+  /** Sets the sums of each cell. */
+  void (*adjoin)(CellGroup & group, const Adjoint & adjoint, const Band & band);
+};
+
+extern const Kernels portableKernels;
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define BONE_PROJECTION_X86
-void
-AddCellsAvx2(CellGroup & group, const Band & band);
-void
-AddCellsAvx512(CellGroup & group, const Band & band);
+extern const Kernels avx2Kernels;
+extern const Kernels avx512Kernels;
 #endif
 
-/** The fastest one that this processor can run. */
-AddCellsFunction
-SelectAddCells();
+/** The fastest ones that this processor can run. */
+const Kernels &
+SelectKernels(bool portable);
 } // namespace projection
 } // namespace bone
 

@@ -20,39 +20,6 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-constexpr int
-CoefficientCount(int degree)
-{
-  return (degree + 1) * (degree + 2) * (degree + 3) / 6;
-}
-
-/** Where exponents (i, j+1, k, l), (i, j, k+1, l) and (one further on) (i, j, k, l+1) of a degree stand, for each
- * (i, j, k, l) of the degree below: the position depends on j+k+l, k+l and l alone. */
-struct Raise
-{
-  int second[CoefficientCount(7)]{};
-  int third[CoefficientCount(7)]{};
-  constexpr Raise()
-  {
-    int p = 0;
-    for (int jkl = 0; jkl <= 7; ++jkl)
-    {
-      for (int kl = 0; kl <= jkl; ++kl)
-      {
-        for (int l = 0; l <= kl; ++l, ++p)
-        {
-          const int layer = (jkl + 1) * (jkl + 2) * (jkl + 3) / 6;
-          second[p] = layer + kl * (kl + 1) / 2 + l;
-          third[p] = layer + (kl + 1) * (kl + 2) / 2 + l;
-        }
-      }
-    }
-  }
-};
-constexpr Raise raise;
-
-constexpr double factorial[] = { 1, 1, 2, 6, 24, 120, 720, 5040, 40320 };
-
 template <int N>
 struct Monomials
 {
@@ -101,12 +68,6 @@ struct RayPolynomials
 {
   Group a[N + 1][(N + 1) * (N + 1)];
   Group growth;
-};
-
-template <typename TReal>
-struct Vector
-{
-  typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
 };
 
 /** The same, ready to be evaluated for all (k, a) of a row at once. */
@@ -188,24 +149,6 @@ struct Gauss<5>
                                   0.23931433524968324,
                                   0.11846344252809454 };
 };
-
-/** out[0..lanes) += value where the mask says so. */
-inline void
-Accumulate(float * out, const Vector<float>::Type & value)
-{
-  Vector<float>::Type sum;
-  __builtin_memcpy(&sum, out, sizeof(sum));
-  sum += value;
-  __builtin_memcpy(out, &sum, sizeof(sum));
-}
-inline void
-Accumulate(float * out, const Vector<double>::Type & value)
-{
-  for (int i = 0; i < lanes; ++i)
-  {
-    out[i] += static_cast<float>(value[i]);
-  }
-}
 
 /** One row: pixels 0..count, with the planes' depths at pixel 0 and per pixel, and the polynomial at the row. */
 template <typename TReal, int N, int TFronts>
@@ -454,17 +397,9 @@ AddOfDegree(CellGroup & group, const Band & band)
 inline void
 AddCells(CellGroup & group, const Band & band)
 {
-  for (int g = group.count; g < groupSize; ++g)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      group.column[i][g] = group.column[i][0];
-      group.row[i][g] = group.row[i][0];
-      group.s[i][g] = group.s[i][0];
-    }
-    group.coefficients[g] = group.coefficients[0];
-  }
-  constexpr AddCellsFunction byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
+  Complete(group);
+  using Function = void (*)(CellGroup &, const Band &);
+  constexpr Function byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
                                             AddOfDegree<3>, AddOfDegree<4>, AddOfDegree<5>,
                                             AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
   byDegree[group.degree](group, band);

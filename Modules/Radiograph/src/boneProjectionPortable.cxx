@@ -11,30 +11,32 @@
 #define BONE_PROJECTION_NAMESPACE portable
 #include "boneProjectionKernel.hxx"
 
+#include "boneDerivativeKernel.hxx"
+
 namespace bone
 {
 namespace projection
 {
-void
-AddCellsPortable(CellGroup & group, const Band & band)
-{
-  portable::AddCells(group, band);
-}
+const Kernels portableKernels = { portable::AddCells, portable::DeriveCells, portable::AdjoinCells };
 
-AddCellsFunction
-SelectAddCells()
+const Kernels &
+SelectKernels(bool portable)
 {
 #ifdef BONE_PROJECTION_X86
-  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma"))
+  if (!portable && __builtin_cpu_supports("fma"))
   {
-    return AddCellsAvx512;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-  {
-    return AddCellsAvx2;
+    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+    {
+      return avx512Kernels;
+    }
+    if (__builtin_cpu_supports("avx2"))
+    {
+      return avx2Kernels;
+    }
   }
 #endif
-  return AddCellsPortable;
+  static_cast<void>(portable);
+  return portableKernels;
 }
 } // namespace projection
 } // namespace bone

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneMeshRadiograph.h"
+#include "boneMeshDerivatives.h"
 
 #include "boneRadiographTestMeshes.h"
 #include "boneVoxelRadiograph.h"
@@ -74,6 +74,41 @@ Projection(benchmark::State & state)
   state.counters["intervals_per_second"] = benchmark::Counter(intervals, benchmark::Counter::kIsIterationInvariantRate);
 }
 
+/** The image with its derivatives by 6 pose, 10 shape and 10 density modes. */
+void
+Derivatives(benchmark::State & state)
+{
+  const auto      mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const auto      view = FramedView();
+  RadiographModes modes;
+  modes.pose = true;
+  for (int m = 0; m < 10; ++m)
+  {
+    modes.shape.emplace_back(mesh.points);
+    modes.density.emplace_back(mesh.coefficients);
+  }
+  const std::size_t  pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
+  std::vector<float> image(pixels), derivatives(pixels * modes.Count());
+  for (auto _ : state)
+  {
+    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, image.data(), derivatives.data());
+  }
+}
+
+void
+Backprojection(benchmark::State & state)
+{
+  const auto                 mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const auto                 view = FramedView();
+  const std::vector<float>   image(static_cast<std::size_t>(view.size[0]) * view.size[1], 1.0f);
+  std::vector<double>        coefficients(mesh.coefficients.size());
+  std::vector<bone::Vector3> positions(mesh.points.size());
+  for (auto _ : state)
+  {
+    BackprojectToMesh(mesh.points, mesh, view, {}, loops, image.data(), coefficients.data(), positions.data());
+  }
+}
+
 void
 Walk(benchmark::State & state)
 {
@@ -112,5 +147,16 @@ BENCHMARK(Projection)
   ->Args({ 300000, 3 })
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(Derivatives)
+  ->Args({ 33000, 2 })
+  ->Args({ 33000, 3 })
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
+BENCHMARK(Backprojection)
+  ->Args({ 33000, 3 })
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
 BENCHMARK(Voxels)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Walk)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -1,0 +1,553 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see.
+//
+// Along a ray the barycentric coordinates are mu_i = (slope_i v + p_i) / (1 + kappa v) with p_i affine in the pixel. A
+// displacement of the vertices by w_j changes mu_i at a fixed point by -sum_j M_ij mu_j, M_ij = grad mu_i . w_j, and so
+//   dI = sum_ij M_ij K_ij,  K_ij = - integral of (d rho / d mu_i) mu_j
+//                                  + rho mu_j / (d mu_i / ds) at the exit if that is through face i - at the entry ...
+// with d mu_i / dz = -slope_i (1 + kappa v) on face i. As sum_i M_ij = 0, K_0j is subtracted from the others.
+// Integrals along the chord are Gauss-Lobatto's: its ends are needed anyway.
+
+namespace bone
+{
+namespace projection
+{
+namespace BONE_PROJECTION_NAMESPACE
+{
+template <int TPoints>
+struct Lobatto;
+template <>
+struct Lobatto<2>
+{
+  static constexpr double x[] = { -1.0, 1.0 }, w[] = { 0.5, 0.5 };
+};
+template <>
+struct Lobatto<3>
+{
+  static constexpr double x[] = { -1.0, 0.0, 1.0 }, w[] = { 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0 };
+};
+template <>
+struct Lobatto<4>
+{
+  static constexpr double x[] = { -1.0, -0.44721359549995794, 0.44721359549995794, 1.0 };
+  static constexpr double w[] = { 1.0 / 12.0, 5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0 };
+};
+template <>
+struct Lobatto<5>
+{
+  static constexpr double x[] = { -1.0, -0.65465367070797714, 0.0, 0.65465367070797714, 1.0 };
+  static constexpr double w[] = { 0.05, 49.0 / 180.0, 16.0 / 45.0, 49.0 / 180.0, 0.05 };
+};
+template <>
+struct Lobatto<6>
+{
+  static constexpr double x[] = { -1.0,
+                                  -0.76505532392946469,
+                                  -0.28523151648064510,
+                                  0.28523151648064510,
+                                  0.76505532392946469,
+                                  1.0 };
+  static constexpr double w[] = { 1.0 / 30.0,          0.18923747814892349, 0.27742918851774318,
+                                  0.27742918851774318, 0.18923747814892349, 1.0 / 30.0 };
+};
+
+/** Exponents in the coefficients' order, and multinomials. */
+template <int N>
+struct Exponents
+{
+  int    of[CoefficientCount(N)][4]{};
+  double multinomial[CoefficientCount(N)]{};
+  constexpr Exponents()
+  {
+    int p = 0;
+    for (int i = N; i >= 0; --i)
+    {
+      for (int j = N - i; j >= 0; --j)
+      {
+        for (int k = N - i - j; k >= 0; --k, ++p)
+        {
+          const int l = N - i - j - k;
+          of[p][0] = i;
+          of[p][1] = j;
+          of[p][2] = k;
+          of[p][3] = l;
+          multinomial[p] = factorial[N] / (factorial[i] * factorial[j] * factorial[k] * factorial[l]);
+        }
+      }
+    }
+  }
+};
+
+/** function(0), ..., function(TCount - 1), unrolled where it is short. */
+template <int TCount, int TFirst = 0, typename TFunction>
+inline __attribute__((always_inline)) void
+Repeat(const TFunction & function)
+{
+  if constexpr (TCount > 20)
+  {
+    for (int i = 0; i < TCount; ++i)
+    {
+      function(i);
+    }
+  }
+  else if constexpr (TFirst < TCount)
+  {
+    function(TFirst);
+    Repeat<TCount, TFirst + 1>(function);
+  }
+}
+
+/** mu0^i mu1^j mu2^k mu3^l in the coefficients' order. */
+template <int N, typename TLanes>
+inline void
+Products(const TLanes (&mu)[4], TLanes (&products)[CoefficientCount(N)])
+{
+  static constexpr Exponents<N> exponents;
+  TLanes                        power[4][N + 1];
+  for (int i = 0; i < 4; ++i)
+  {
+    power[i][0] = TLanes{} + 1;
+    for (int n = 1; n <= N; ++n)
+    {
+      power[i][n] = n == 1 ? mu[i] : power[i][n - 1] * mu[i];
+    }
+  }
+  Repeat<CoefficientCount(N)>([&](int p) {
+    const int(&e)[4] = exponents.of[p];
+    products[p] = (power[0][e[0]] * power[1][e[1]]) * (power[2][e[2]] * power[3][e[3]]);
+  });
+}
+
+/** A cell's density for derivatives, multinomials and the factor h within. */
+template <typename TReal, int N>
+struct DerivedDensity
+{
+  static constexpr int lower = N > 0 ? N - 1 : 0;
+
+  TReal rate[4][CoefficientCount(lower)]; ///< d rho / d mu_0 / N, and d rho / d mu_i less d rho / d mu_0
+
+  DerivedDensity(const double * coefficients, double scale, double offset)
+  {
+    static constexpr Exponents<lower> exponents;
+    for (int p = 0; p < CoefficientCount(lower); ++p)
+    {
+      const int raised[4] = { p, raise.second[p], raise.third[p], raise.third[p] + 1 };
+      for (int i = 0; i < 4; ++i)
+      {
+        const double factor = exponents.multinomial[p] * scale;
+        const double first = factor * coefficients[p];
+        rate[i][p] = static_cast<TReal>(i == 0 ? first + exponents.multinomial[p] * offset
+                                               : (N > 0 ? N * (factor * coefficients[raised[i]] - first) : 0.0));
+      }
+    }
+  }
+};
+
+/** What one cell is along the rays of a row; see the top. */
+template <typename TReal>
+struct RayStarts
+{
+  TReal depth[4], depthStep[4]; ///< fronts first, as in Frame
+  TReal p[4], pStep[4];         ///< by vertex
+  TReal slope[4];               ///< by vertex
+  TReal perSlope[4];            ///< 1 / slope of the planes, as in Frame
+  TReal kappa;
+};
+
+template <typename TReal, int N>
+struct Batch
+{
+  using Lanes = typename Vector<TReal>::Type;
+  Lanes value;                      ///< integral
+  Lanes k[3][4];                    ///< K_ij of vertices i = 1..3
+  Lanes basis[CoefficientCount(N)]; ///< integrals of the products
+};
+
+/** The pixels at `index` of a row, those below `end`. */
+template <typename TReal, int N>
+inline void
+SetBatch(const RayStarts<TReal> &              rays,
+         const int (&face)[4],
+         int                                   fronts,
+         const DerivedDensity<TReal, N> &      density,
+         const typename Vector<TReal>::Type &  index,
+         TReal                                 end,
+         bool                                  withShape,
+         bool                                  withDensity,
+         Batch<TReal, N> &                     batch)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  constexpr int nodes = (N + 4) / 2; // exact to degree 2 nodes - 3
+  const Lanes   none{};
+
+  Lanes depth[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    depth[i] = rays.depth[i] + rays.depthStep[i] * index;
+  }
+  Lanes entry = depth[0], exit = depth[3];
+  for (int i = 1; i < 3; ++i)
+  {
+    if (i < fronts)
+    {
+      entry = depth[i] < entry ? depth[i] : entry;
+    }
+    else
+    {
+      exit = depth[i] > exit ? depth[i] : exit;
+    }
+  }
+  const auto hit = (entry > exit) & (index < end);
+  entry = hit ? entry : none;
+  exit = hit ? exit : none;
+  const Lanes perEntry = 1 / (1 + rays.kappa * entry), perExit = 1 / (1 + rays.kappa * exit);
+  const Lanes length = (entry - exit) * (perEntry * perExit);
+  Lanes       from[4], to[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    const Lanes p = rays.p[i] + rays.pStep[i] * index;
+    from[i] = (p + rays.slope[i] * entry) * perEntry;
+    to[i] = (p + rays.slope[i] * exit) * perExit;
+  }
+  batch.value = none;
+  for (auto & row : batch.k)
+  {
+    for (auto & entryOfK : row)
+    {
+      entryOfK = none;
+    }
+  }
+  for (auto & integral : batch.basis)
+  {
+    integral = none;
+  }
+  Lanes atEntry = none, atExit = none;
+  for (int g = 0; g < nodes; ++g)
+  {
+    Lanes mu[4];
+    for (int i = 0; i < 4; ++i)
+    {
+      mu[i] = TReal(0.5 - 0.5 * Lobatto<nodes>::x[g]) * from[i] + TReal(0.5 + 0.5 * Lobatto<nodes>::x[g]) * to[i];
+    }
+    const Lanes weight = TReal(Lobatto<nodes>::w[g]) * length;
+    if (withDensity)
+    {
+      Lanes products[CoefficientCount(N)];
+      Products<N>(mu, products);
+      Repeat<CoefficientCount(N)>([&](int p) {
+        batch.basis[p] += weight * products[p];
+      });
+    }
+    constexpr int below = DerivedDensity<TReal, N>::lower;
+    Lanes         products[CoefficientCount(below)];
+    Products<below>(mu, products);
+    Lanes rate[4] = {};
+    for (int i = 0; i < (N > 0 ? 4 : 1); ++i)
+    {
+      Repeat<CoefficientCount(below)>([&](int p) {
+        rate[i] += density.rate[i][p] * products[p];
+      });
+    }
+    const Lanes value = rate[0] + TReal(N > 0 ? 1.0 / N : 0.0) * (mu[1] * rate[1] + mu[2] * rate[2] + mu[3] * rate[3]);
+    batch.value += weight * value;
+    atEntry = g == 0 ? value : atEntry;
+    atExit = value;
+    if (withShape && N > 0)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        const Lanes weighted = weight * rate[i + 1];
+        for (int j = 0; j < 4; ++j)
+        {
+          batch.k[i][j] -= weighted * mu[j];
+        }
+      }
+    }
+  }
+  if (!withShape)
+  {
+    return;
+  }
+  // Face terms: positive at the entry since its slope is negative.
+  const Lanes in = hit ? atEntry * perEntry : none, out = hit ? atExit * perExit : none;
+  auto openEntry = hit, openExit = hit; // where several planes meet, one counts
+  for (int plane = 0; plane < 4; ++plane)
+  {
+    const bool front = plane < fronts;
+    if (!front && plane < 3 && face[plane] == face[3])
+    {
+      continue;
+    }
+    const auto here = front ? (depth[plane] == entry) & openEntry : (depth[plane] == exit) & openExit;
+    openEntry &= front ? ~here : openEntry;
+    openExit &= front ? openExit : ~here;
+    const Lanes at = here ? (front ? in : -out) : none;
+    const Lanes moved = at * rays.perSlope[plane];
+    for (int j = 0; j < 4; ++j)
+    {
+      const Lanes term = moved * (front ? from[j] : to[j]);
+      for (int i = 0; i < 3; ++i)
+      {
+        if (face[plane] == i + 1)
+        {
+          batch.k[i][j] += term;
+        }
+        else if (face[plane] == 0)
+        {
+          batch.k[i][j] -= term;
+        }
+      }
+    }
+  }
+}
+
+/** Calls function(batch, row, column) for all batches of a cell. */
+template <typename TReal, int N, typename TFunction>
+inline void
+ForEachBatch(const GroupFrame &    group,
+             int                   member,
+             const Frame &         frame,
+             const double *        coefficients,
+             double                scale,
+             double                offset,
+             bool                  withShape,
+             bool                  withDensity,
+             const TFunction &     function)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  const double                   h = group.halfDepth[member];
+  const DerivedDensity<TReal, N> density(coefficients, h * scale, h * offset);
+  const double                   perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
+  RayStarts<TReal>               rays;
+  rays.kappa = static_cast<TReal>(frame.kappa);
+  for (int i = 0; i < 4; ++i)
+  {
+    rays.depthStep[i] = static_cast<TReal>(frame.depth[i][1]);
+    rays.perSlope[i] = static_cast<TReal>(1.0 / group.slope[frame.face[i]][member]);
+    rays.slope[i] = static_cast<TReal>(group.slope[i][member]);
+    rays.pStep[i] = static_cast<TReal>(group.mu[1][i][member] * perWidth);
+  }
+  const Lanes index = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  for (int block = frame.firstRow; block < frame.endRow; block += lanes)
+  {
+    RowRuns runs;
+    SetRowRuns(frame, block, runs);
+    for (int j = 0; j < lanes && block + j < frame.endRow; ++j)
+    {
+      const double dr = block + j - frame.r0, dc = runs.first[j] - frame.c0;
+      for (int i = 0; i < 4; ++i)
+      {
+        const double(&depth)[3] = frame.depth[i];
+        rays.depth[i] = static_cast<TReal>(depth[0] + depth[1] * dc + depth[2] * dr);
+        rays.p[i] = static_cast<TReal>(group.mu[0][i][member] + group.mu[1][i][member] * perWidth * dc +
+                                       group.mu[2][i][member] * perHeight * dr);
+      }
+      for (int i = 0; i < runs.count[j]; i += lanes)
+      {
+        Batch<TReal, N> batch;
+        SetBatch<TReal, N>(rays,
+                           frame.face,
+                           frame.fronts,
+                           density,
+                           index + static_cast<TReal>(i),
+                           static_cast<TReal>(runs.count[j]),
+                           withShape,
+                           withDensity,
+                           batch);
+        function(batch, block + j, runs.first[j] + i);
+      }
+    }
+  }
+}
+
+template <typename TReal, int N>
+void
+DeriveMember(const CellGroup &   group,
+             const GroupFrame &  groupFrame,
+             int                 member,
+             const Frame &       frame,
+             const Derivatives & derivatives,
+             const Band &        band)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  static constexpr Exponents<N> exponents;
+  TReal * const                 shape = reinterpret_cast<TReal *>(derivatives.scratch);
+  TReal * const                 density = shape + 12 * derivatives.shapeModes;
+  for (int i = 0; i < 12 * derivatives.shapeModes; ++i)
+  {
+    shape[i] = static_cast<TReal>(derivatives.shape[member][i]);
+  }
+  const double scale = groupFrame.halfDepth[member] * group.scale;
+  for (int m = 0; m < derivatives.densityModes; ++m)
+  {
+    const double * mode = derivatives.density[m] + derivatives.coefficient[member];
+    for (int p = 0; p < CoefficientCount(N); ++p)
+    {
+      density[m * CoefficientCount(N) + p] = static_cast<TReal>(scale * exponents.multinomial[p] * mode[p]);
+    }
+  }
+  ForEachBatch<TReal, N>(
+    groupFrame,
+    member,
+    frame,
+    group.coefficients[member],
+    group.scale,
+    group.offset,
+    derivatives.shapeModes > 0,
+    derivatives.densityModes > 0,
+    [&](const Batch<TReal, N> & batch, int row, int column) {
+      float * out = band.data + (row - band.firstRow) * band.stride + column;
+      Accumulate(out, batch.value);
+      for (int m = 0; m < derivatives.shapeModes; ++m)
+      {
+        out += derivatives.plane;
+        Lanes sum{};
+        Repeat<12>([&](int q) {
+          sum += shape[12 * m + q] * batch.k[q / 4][q % 4];
+        });
+        Accumulate(out, sum);
+      }
+      for (int m = 0; m < derivatives.densityModes; ++m)
+      {
+        out += derivatives.plane;
+        Lanes sum{};
+        Repeat<CoefficientCount(N)>([&](int p) {
+          sum += density[m * CoefficientCount(N) + p] * batch.basis[p];
+        });
+        Accumulate(out, sum);
+      }
+    });
+}
+
+inline void
+LoadWeights(const float * from, Vector<float>::Type & weights)
+{
+  __builtin_memcpy(&weights, from, sizeof(weights));
+}
+inline void
+LoadWeights(const float * from, Vector<double>::Type & weights)
+{
+  for (int i = 0; i < lanes; ++i)
+  {
+    weights[i] = from[i];
+  }
+}
+
+template <typename TLanes>
+inline double
+Sum(const TLanes & values)
+{
+  double sum = 0;
+  for (int i = 0; i < lanes; ++i)
+  {
+    sum += values[i];
+  }
+  return sum;
+}
+
+template <typename TReal, int N>
+void
+AdjoinMember(const CellGroup &  group,
+             const GroupFrame & groupFrame,
+             int                member,
+             const Frame &      frame,
+             const Adjoint &    adjoint,
+             const Band &       band)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  static constexpr Exponents<N> exponents;
+  Lanes                         basis[CoefficientCount(N)] = {}, positions[12] = {};
+  const bool                    withShape = adjoint.positions[member] != nullptr;
+  ForEachBatch<TReal, N>(groupFrame,
+                         member,
+                         frame,
+                         group.coefficients[member],
+                         group.scale,
+                         group.offset,
+                         withShape,
+                         true,
+                         [&](const Batch<TReal, N> & batch, int row, int column) {
+                           Lanes weights;
+                           LoadWeights(band.data + (row - band.firstRow) * band.stride + column, weights);
+                           for (int p = 0; p < CoefficientCount(N); ++p)
+                           {
+                             basis[p] += weights * batch.basis[p];
+                           }
+                           for (int q = 0; withShape && q < 12; ++q)
+                           {
+                             positions[q] += weights * batch.k[q / 4][q % 4];
+                           }
+                         });
+  for (int p = 0; p < CoefficientCount(N); ++p)
+  {
+    adjoint.basis[member][p] = groupFrame.halfDepth[member] * exponents.multinomial[p] * Sum(basis[p]);
+  }
+  for (int q = 0; withShape && q < 12; ++q)
+  {
+    adjoint.positions[member][q] = Sum(positions[q]);
+  }
+}
+
+/** Calls function(member, frame) for the cells of the group that the band sees. */
+template <typename TFunction>
+inline void
+ForEachSeen(CellGroup & group, GroupFrame & groupFrame, const Band & band, const TFunction & function)
+{
+  Complete(group);
+  SetGroupFrame(group, groupFrame);
+  for (int g = 0; g < group.count; ++g)
+  {
+    Frame frame;
+    if (PlaceFrame(groupFrame, g, band, frame) && SetPlanes(groupFrame, g, frame))
+    {
+      function(g, frame);
+    }
+  }
+}
+
+template <int N>
+void
+DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & band)
+{
+  GroupFrame groupFrame;
+  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame) {
+    frame.steep ? DeriveMember<double, N>(group, groupFrame, member, frame, derivatives, band)
+                : DeriveMember<float, N>(group, groupFrame, member, frame, derivatives, band);
+  });
+}
+
+template <int N>
+void
+AdjoinOfDegree(CellGroup & group, const Adjoint & adjoint, const Band & band)
+{
+  GroupFrame groupFrame;
+  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame) {
+    frame.steep ? AdjoinMember<double, N>(group, groupFrame, member, frame, adjoint, band)
+                : AdjoinMember<float, N>(group, groupFrame, member, frame, adjoint, band);
+  });
+}
+
+inline void
+DeriveCells(CellGroup & group, const Derivatives & derivatives, const Band & band)
+{
+  using Function = void (*)(CellGroup &, const Derivatives &, const Band &);
+  constexpr Function byDegree[] = { DeriveOfDegree<0>, DeriveOfDegree<1>, DeriveOfDegree<2>,
+                                    DeriveOfDegree<3>, DeriveOfDegree<4>, DeriveOfDegree<5>,
+                                    DeriveOfDegree<6>, DeriveOfDegree<7>, DeriveOfDegree<8> };
+  byDegree[group.degree](group, derivatives, band);
+}
+
+inline void
+AdjoinCells(CellGroup & group, const Adjoint & adjoint, const Band & band)
+{
+  using Function = void (*)(CellGroup &, const Adjoint &, const Band &);
+  constexpr Function byDegree[] = { AdjoinOfDegree<0>, AdjoinOfDegree<1>, AdjoinOfDegree<2>,
+                                    AdjoinOfDegree<3>, AdjoinOfDegree<4>, AdjoinOfDegree<5>,
+                                    AdjoinOfDegree<6>, AdjoinOfDegree<7>, AdjoinOfDegree<8> };
+  byDegree[group.degree](group, adjoint, band);
+}
+} // namespace BONE_PROJECTION_NAMESPACE
+} // namespace projection
+} // namespace bone

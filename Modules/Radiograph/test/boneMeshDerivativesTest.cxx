@@ -1,0 +1,359 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshDerivatives.h"
+
+#include "boneRadiographTestMeshes.h"
+#include "boneRayFrame.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+namespace
+{
+using namespace bone;
+using View = XRayGeometry::View;
+
+void
+InOrder(std::size_t count, const std::function<void(std::size_t)> & body)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    body(i);
+  }
+}
+const LoopRunner loops{ InOrder, InOrder };
+
+MeshArrays
+Staircase(int degree, bool mixed)
+{
+  auto mesh = test::GridMesh({ { 3, 3, 2 } }, Vector3(-20, -15, -10), Vector3(12, 10, 11), 0.2, [](int i, int j, int) {
+    return i + j < 4 && (i != 1 || j != 0);
+  });
+  for (Vector3 & p : mesh.points)
+  {
+    p += Vector3(0.03 * p.y(), 0.02 * p.z(), 0.04 * p.x()); // no face along the rays
+  }
+  test::SetRandom(mesh, degree, 3);
+  if (!mixed)
+  {
+    mesh.degree.assign(mesh.tetrahedra.size(), degree);
+    std::mt19937                           random(5);
+    std::uniform_real_distribution<double> value(0.2, 1.0);
+    std::generate(mesh.coefficients.begin(), mesh.coefficients.end(), [&]() { return value(random); });
+  }
+  return mesh;
+}
+
+View
+Look(bool parallel, const Vector3 & source = Vector3(-60, -300, -40))
+{
+  View view;
+  view.parallel = parallel;
+  view.source = source;
+  view.direction = Vector3(0.2, 1, 0.15).normalized();
+  view.detectorOrigin = Vector3(-27, 120, 33);
+  view.spacing = { 2.1, 1.9 };
+  view.size = { { 33, 29 } };
+  return view;
+}
+
+/** In double precision, by clipping each ray with each tetrahedron. */
+std::vector<double>
+Reference(const std::vector<Vector3> & points,
+          const MeshArrays &           mesh,
+          const View &                 view,
+          const MeshRadiographOptions & options)
+{
+  const auto          rays = RayFrame::Displaced(view);
+  const std::size_t   stride = BernsteinCount(mesh.maximumDegree);
+  std::vector<double> image;
+  for (int r = 0; r < view.size[1]; ++r)
+  {
+    for (int c = 0; c < view.size[0]; ++c)
+    {
+      const Vector3 direction = rays.Direction(c, r), origin = rays.Origin(c, r);
+      double        sum = 0;
+      for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+      {
+        const Id4 &       v = mesh.tetrahedra[t];
+        const Vector3 &   a = points[v[0]], &b = points[v[1]], &d = points[v[2]], &e = points[v[3]];
+        const Barycentric start = BarycentricCoordinates(origin, a, b, d, e);
+        const Barycentric step = BarycentricCoordinates(origin + direction, a, b, d, e) - start;
+        double            first = view.parallel ? -1e6 : 0, last = view.parallel ? 0 : 1;
+        for (int i = 0; i < 4; ++i)
+        {
+          (step[i] > 0 ? first : last) =
+            step[i] > 0 ? std::max(first, -start[i] / step[i]) : std::min(last, -start[i] / step[i]);
+        }
+        if (first < last && mesh.region[t] >= options.minimumRegion)
+        {
+          const double length = (last - first) * direction.norm();
+          sum += options.offset * length +
+                 options.scale * BernsteinSegmentIntegral(mesh.degree[t],
+                                                          mesh.coefficients.data() + t * stride,
+                                                          start + first * step,
+                                                          start + last * step,
+                                                          length);
+        }
+      }
+      image.push_back(sum);
+    }
+  }
+  return image;
+}
+
+/** Random smooth displacements and random changes of density. */
+RadiographModes
+RandomModes(const MeshArrays & mesh, int count)
+{
+  std::mt19937                           random(17);
+  std::uniform_real_distribution<double> value(-1.0, 1.0);
+  RadiographModes                        modes;
+  modes.pose = true;
+  modes.poseCentre = Vector3(3, -2, 1);
+  for (int m = 0; m < count; ++m)
+  {
+    const Eigen::Matrix3d linear = Eigen::Matrix3d::NullaryExpr([&]() { return 0.05 * value(random); });
+    modes.shape.emplace_back();
+    for (const Vector3 & p : mesh.points)
+    {
+      modes.shape.back().emplace_back(linear * p + 0.5 * Vector3(value(random), value(random), value(random)));
+    }
+    modes.density.emplace_back(mesh.coefficients.size());
+    std::generate(modes.density.back().begin(), modes.density.back().end(), [&]() { return value(random); });
+  }
+  return modes;
+}
+
+struct Images
+{
+  std::vector<float> image;
+  std::vector<float> derivatives;
+};
+
+Images
+Derive(const MeshArrays & mesh, const View & view, const RadiographModes & modes, const MeshRadiographOptions & options)
+{
+  const std::size_t pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
+  Images            images{ std::vector<float>(pixels, -1), std::vector<float>(pixels * modes.Count(), -1) };
+  ProjectMeshDerivatives(
+    mesh.points, mesh, view, options, modes, loops, images.image.data(), images.derivatives.data());
+  return images;
+}
+
+/** The mesh moved by `step` along mode m. */
+MeshArrays
+Moved(const MeshArrays & mesh, const RadiographModes & modes, std::size_t m, double step)
+{
+  MeshArrays moved = mesh;
+  if (m < 6)
+  {
+    const Vector3 axis = Vector3::Unit(m % 3);
+    const auto    turn = Eigen::AngleAxisd(step, axis);
+    for (Vector3 & p : moved.points)
+    {
+      p = m < 3 ? Vector3(p + step * axis) : Vector3(modes.poseCentre + turn * (p - modes.poseCentre));
+    }
+  }
+  else if (m < 6 + modes.shape.size())
+  {
+    for (std::size_t p = 0; p < moved.points.size(); ++p)
+    {
+      moved.points[p] += step * modes.shape[m - 6][p];
+    }
+  }
+  else
+  {
+    for (std::size_t c = 0; c < moved.coefficients.size(); ++c)
+    {
+      moved.coefficients[c] += step * modes.density[m - 6 - modes.shape.size()][c];
+    }
+  }
+  return moved;
+}
+
+/** The 99th percentile, over the pixels hit, of the difference to central differences over the largest of these. */
+double
+DifferenceToCentral(const MeshArrays &            mesh,
+                    const View &                  view,
+                    const RadiographModes &       modes,
+                    const MeshRadiographOptions & options,
+                    std::size_t                   m,
+                    const float *                 derivative)
+{
+  const double        step = m >= 3 && m < 6 ? 1e-6 : 1e-5;
+  const auto          here = Reference(mesh.points, mesh, view, options);
+  const auto          after = Moved(mesh, modes, m, step), before = Moved(mesh, modes, m, -step);
+  const auto          high = Reference(after.points, after, view, options);
+  const auto          low = Reference(before.points, before, view, options);
+  std::vector<double> differences;
+  double              largest = 0;
+  for (std::size_t i = 0; i < here.size(); ++i)
+  {
+    const double central = (high[i] - low[i]) / (2 * step);
+    largest = std::max(largest, std::abs(central));
+    if (here[i] != 0)
+    {
+      differences.push_back(std::abs(central - derivative[i]));
+    }
+  }
+  std::sort(differences.begin(), differences.end());
+  EXPECT_GT(differences.size(), 200u);
+  return differences[differences.size() * 99 / 100] / largest;
+}
+
+void
+ExpectCentralDifferences(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+{
+  const auto        modes = RandomModes(mesh, 1);
+  const auto        images = Derive(mesh, view, modes, options);
+  const std::size_t pixels = images.image.size();
+  const auto        expected = Reference(mesh.points, mesh, view, options);
+  const double      largest = *std::max_element(expected.begin(), expected.end());
+  for (std::size_t i = 0; i < pixels; ++i)
+  {
+    ASSERT_NEAR(images.image[i], expected[i], 1e-5 * largest);
+  }
+  for (std::size_t m = 0; m < modes.Count(); ++m)
+  {
+    EXPECT_LT(DifferenceToCentral(mesh, view, modes, options, m, images.derivatives.data() + m * pixels), 1e-3)
+      << "mode " << m;
+  }
+}
+} // namespace
+
+TEST(MeshDerivatives, EqualCentralDifferencesAtAnyDegree)
+{
+  for (int degree = 0; degree <= MaximumBernsteinDegree; ++degree)
+  {
+    SCOPED_TRACE(degree);
+    ExpectCentralDifferences(Staircase(degree, false), Look(degree % 2 == 1));
+  }
+}
+
+TEST(MeshDerivatives, EqualCentralDifferencesForAttenuationOfARegionAndMixedDegrees)
+{
+  MeshRadiographOptions options;
+  options.scale = 2e-2;
+  options.offset = 0.03;
+  options.minimumRegion = 2;
+  ExpectCentralDifferences(Staircase(4, true), Look(false), options);
+}
+
+TEST(MeshDerivatives, EqualCentralDifferencesWithTheSourceInsideAndTheDetectorThroughTheMesh)
+{
+  View view = Look(false, Vector3(-9, -9, 2));
+  view.detectorOrigin = Vector3(-27, 9.5, 33);
+  ExpectCentralDifferences(Staircase(3, true), view);
+  view = Look(true);
+  view.detectorOrigin = Vector3(-27, 1.5, 33);
+  ExpectCentralDifferences(Staircase(3, true), view);
+}
+
+TEST(MeshDerivatives, WithoutModesThereIsTheImage)
+{
+  const auto mesh = Staircase(3, true);
+  const View view = Look(false);
+  const auto images = Derive(mesh, view, {}, {});
+  const auto expected = Reference(mesh.points, mesh, view, {});
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    EXPECT_NEAR(images.image[i], expected[i], 1e-4);
+  }
+}
+
+TEST(MeshDerivatives, TheAdjointIsTheTranspose)
+{
+  for (int degree : { 0, 2, 3, 8 })
+  {
+    const auto mesh = Staircase(degree, true);
+    auto       view = Look(false);
+    for (bool inside : { false, true })
+    {
+      view.source = inside ? Vector3(-9, -9, 2) : view.source;
+      MeshRadiographOptions options;
+      options.scale = 0.7;
+      const auto modes = RandomModes(mesh, 1);
+      const auto images = Derive(mesh, view, modes, options);
+
+      std::mt19937                           random(23);
+      std::uniform_real_distribution<double> value(-1.0, 1.0);
+      std::vector<float>                     weights(images.image.size());
+      std::generate(weights.begin(), weights.end(), [&]() { return static_cast<float>(value(random)); });
+      std::vector<double>  coefficients(mesh.coefficients.size(), 7);
+      std::vector<Vector3> positions(mesh.points.size());
+      BackprojectToMesh(
+        mesh.points, mesh, view, options, loops, weights.data(), coefficients.data(), positions.data());
+
+      const auto weigh = [&](const float * image, double & size) {
+        double sum = size = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i)
+        {
+          sum += static_cast<double>(weights[i]) * image[i];
+          size += std::abs(static_cast<double>(weights[i]) * image[i]);
+        }
+        return sum;
+      };
+      double       size;
+      const double forward = weigh(images.image.data(), size);
+      double       backward = 0;
+      for (std::size_t c = 0; c < coefficients.size(); ++c)
+      {
+        backward += coefficients[c] * mesh.coefficients[c];
+      }
+      EXPECT_NEAR(forward, backward, 1e-5 * size) << degree << inside;
+
+      for (std::size_t m = 0; m < 7; ++m)
+      {
+        const auto moved = Moved(mesh, modes, m, 1e-7);
+        double     change = 0;
+        for (std::size_t p = 0; p < positions.size(); ++p)
+        {
+          change += positions[p].dot(moved.points[p] - mesh.points[p]) / 1e-7;
+        }
+        const double expected = weigh(images.derivatives.data() + m * weights.size(), size);
+        EXPECT_NEAR(change, expected, 1e-5 * size) << degree << inside << m;
+      }
+    }
+  }
+}
+
+TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
+{
+  const auto mesh = Staircase(3, true);
+  const View view = Look(false);
+  const auto modes = RandomModes(mesh, 2);
+  const auto images = Derive(mesh, view, modes, {});
+  const auto backwards = [](std::size_t count, const std::function<void(std::size_t)> & body) {
+    for (std::size_t i = count; i-- > 0;)
+    {
+      body(i);
+    }
+  };
+  Images other = images;
+  ProjectMeshDerivatives(mesh.points,
+                         mesh,
+                         view,
+                         {},
+                         modes,
+                         { backwards, backwards },
+                         other.image.data(),
+                         other.derivatives.data());
+  EXPECT_EQ(images.derivatives, other.derivatives);
+
+  MeshRadiographOptions portable;
+  portable.portable = true;
+  const auto plain = Derive(mesh, view, modes, portable);
+  double     largest = 0;
+  for (std::size_t i = 0; i < plain.derivatives.size(); ++i)
+  {
+    largest = std::max(largest, std::abs(static_cast<double>(plain.derivatives[i])));
+  }
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < plain.derivatives.size(); ++i)
+  {
+    different += std::abs(plain.derivatives[i] - images.derivatives[i]) > 1e-4 * largest ? 1 : 0;
+  }
+  EXPECT_LT(different, plain.derivatives.size() / 1000) << "at an edge another face may count";
+}
