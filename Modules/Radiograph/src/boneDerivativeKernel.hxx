@@ -211,61 +211,54 @@ SetBatch(const RayStarts<TReal> &              rays,
     from[i] = (p + rays.slope[i] * entry) * perEntry;
     to[i] = (p + rays.slope[i] * exit) * perExit;
   }
-  batch.value = none;
-  for (auto & row : batch.k)
-  {
-    for (auto & entryOfK : row)
-    {
-      entryOfK = none;
-    }
-  }
-  for (auto & integral : batch.basis)
-  {
-    integral = none;
-  }
   Lanes atEntry = none, atExit = none;
-  for (int g = 0; g < nodes; ++g)
-  {
-    Lanes mu[4];
+  batch.value = none;
+  // The first node sets what the others add to.
+  Repeat<nodes>([&](int g) {
+    constexpr int below = DerivedDensity<TReal, N>::lower;
+    Lanes         mu[4];
     for (int i = 0; i < 4; ++i)
     {
-      mu[i] = TReal(0.5 - 0.5 * Lobatto<nodes>::x[g]) * from[i] + TReal(0.5 + 0.5 * Lobatto<nodes>::x[g]) * to[i];
+      const TReal ofStart = TReal(0.5 - 0.5 * Lobatto<nodes>::x[g]), ofEnd = TReal(0.5 + 0.5 * Lobatto<nodes>::x[g]);
+      mu[i] = g == 0 ? from[i] : (g == nodes - 1 ? to[i] : ofStart * from[i] + ofEnd * to[i]);
     }
     const Lanes weight = TReal(Lobatto<nodes>::w[g]) * length;
     if (withDensity)
     {
       Lanes products[CoefficientCount(N)];
       Products<N>(mu, products);
-      Repeat<CoefficientCount(N)>([&](int p) {
-        batch.basis[p] += weight * products[p];
-      });
+      Repeat<CoefficientCount(N)>(
+        [&](int p) { batch.basis[p] = g == 0 ? weight * products[p] : batch.basis[p] + weight * products[p]; });
     }
-    constexpr int below = DerivedDensity<TReal, N>::lower;
-    Lanes         products[CoefficientCount(below)];
+    Lanes products[CoefficientCount(below)], rate[4];
     Products<below>(mu, products);
-    Lanes rate[4] = {};
     for (int i = 0; i < (N > 0 ? 4 : 1); ++i)
     {
-      Repeat<CoefficientCount(below)>([&](int p) {
-        rate[i] += density.rate[i][p] * products[p];
-      });
+      Lanes sums[2] = { none, none };
+      Repeat<CoefficientCount(below)>([&](int p) { sums[p % 2] += density.rate[i][p] * products[p]; });
+      rate[i] = sums[0] + sums[1];
     }
-    const Lanes value = rate[0] + TReal(N > 0 ? 1.0 / N : 0.0) * (mu[1] * rate[1] + mu[2] * rate[2] + mu[3] * rate[3]);
+    Lanes value = rate[0];
+    if constexpr (N > 0)
+    {
+      value += TReal(1.0 / N) * (mu[1] * rate[1] + mu[2] * rate[2] + mu[3] * rate[3]);
+    }
     batch.value += weight * value;
     atEntry = g == 0 ? value : atEntry;
     atExit = value;
-    if (withShape && N > 0)
+    for (int i = 0; withShape && i < 3; ++i)
     {
-      for (int i = 0; i < 3; ++i)
+      Lanes weighted = none;
+      if constexpr (N > 0)
       {
-        const Lanes weighted = weight * rate[i + 1];
-        for (int j = 0; j < 4; ++j)
-        {
-          batch.k[i][j] -= weighted * mu[j];
-        }
+        weighted = weight * rate[i + 1];
+      }
+      for (int q = 0; q < 4; ++q)
+      {
+        batch.k[i][q] = g == 0 ? -weighted * mu[q] : batch.k[i][q] - weighted * mu[q];
       }
     }
-  }
+  });
   if (!withShape)
   {
     return;
@@ -303,8 +296,8 @@ SetBatch(const RayStarts<TReal> &              rays,
   }
 }
 
-/** Calls function(batch, row, column) for all batches of a cell. */
-template <typename TReal, int N, typename TFunction>
+/** Sets consumer.Slot() and calls consumer.Done(row, column) for all batches of a cell. */
+template <typename TReal, int N, typename TConsumer>
 inline void
 ForEachBatch(const GroupFrame &    group,
              int                   member,
@@ -314,7 +307,7 @@ ForEachBatch(const GroupFrame &    group,
              double                offset,
              bool                  withShape,
              bool                  withDensity,
-             const TFunction &     function)
+             TConsumer &           consumer)
 {
   using Lanes = typename Vector<TReal>::Type;
   const double                   h = group.halfDepth[member];
@@ -346,7 +339,6 @@ ForEachBatch(const GroupFrame &    group,
       }
       for (int i = 0; i < runs.count[j]; i += lanes)
       {
-        Batch<TReal, N> batch;
         SetBatch<TReal, N>(rays,
                            frame.face,
                            frame.fronts,
@@ -355,12 +347,107 @@ ForEachBatch(const GroupFrame &    group,
                            static_cast<TReal>(runs.count[j]),
                            withShape,
                            withDensity,
-                           batch);
-        function(batch, block + j, runs.first[j] + i);
+                           consumer.Slot());
+        consumer.Done(block + j, runs.first[j] + i);
       }
     }
   }
 }
+
+/** Gathers batches of a cell and adds them to the planes, plane by plane. */
+template <typename TReal, int N>
+class PlaneAdder
+{
+public:
+  using Lanes = typename Vector<TReal>::Type;
+
+  PlaneAdder(const Derivatives & derivatives, const Band & band)
+    : m_Derivatives(derivatives)
+    , m_Band(band)
+    , m_Shape(reinterpret_cast<TReal *>(derivatives.scratch))
+    , m_Density(m_Shape + 12 * derivatives.shapeModes)
+  {}
+
+  /** Takes the modes of one cell of the group. */
+  void
+  SetModes(int member, double scale)
+  {
+    static constexpr Exponents<N> exponents;
+    for (int i = 0; i < 12 * m_Derivatives.shapeModes; ++i)
+    {
+      m_Shape[i] = static_cast<TReal>(m_Derivatives.shape[member][i]);
+    }
+    for (int m = 0; m < m_Derivatives.densityModes; ++m)
+    {
+      const double * mode = m_Derivatives.density[m] + m_Derivatives.coefficient[member];
+      for (int p = 0; p < CoefficientCount(N); ++p)
+      {
+        m_Density[m * CoefficientCount(N) + p] = static_cast<TReal>(scale * exponents.multinomial[p] * mode[p]);
+      }
+    }
+  }
+
+  Batch<TReal, N> &
+  Slot()
+  {
+    return m_Batches[m_Count];
+  }
+  void
+  Done(int row, int column)
+  {
+    m_Out[m_Count++] = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
+    if (m_Count == capacity)
+    {
+      Flush();
+    }
+  }
+  void
+  Flush()
+  {
+    std::ptrdiff_t plane = 0;
+    for (int b = 0; b < m_Count; ++b)
+    {
+      Accumulate(m_Out[b], m_Batches[b].value);
+    }
+    for (int m = 0; m < m_Derivatives.shapeModes; ++m)
+    {
+      plane += m_Derivatives.plane;
+      AddPlane<12>(m_Shape + 12 * m, plane, [](const Batch<TReal, N> & batch) { return &batch.k[0][0]; });
+    }
+    for (int m = 0; m < m_Derivatives.densityModes; ++m)
+    {
+      plane += m_Derivatives.plane;
+      AddPlane<CoefficientCount(N)>(
+        m_Density + m * CoefficientCount(N), plane, [](const Batch<TReal, N> & batch) { return batch.basis; });
+    }
+    m_Count = 0;
+  }
+
+private:
+  template <int TCount, typename TTerms>
+  void
+  AddPlane(const TReal * factors, std::ptrdiff_t plane, const TTerms & termsOf)
+  {
+    Lanes factor[TCount];
+    Repeat<TCount>([&](int q) { factor[q] = Lanes{} + factors[q]; });
+    for (int b = 0; b < m_Count; ++b)
+    {
+      const Lanes * terms = termsOf(m_Batches[b]);
+      Lanes         sums[2] = {};
+      Repeat<TCount>([&](int q) { sums[q % 2] += factor[q] * terms[q]; });
+      Accumulate(m_Out[b] + plane, sums[0] + sums[1]);
+    }
+  }
+
+  static constexpr int capacity = N <= 3 ? 16 : 4; ///< what the first-level cache holds
+  const Derivatives &  m_Derivatives;
+  const Band &         m_Band;
+  TReal *              m_Shape;
+  TReal *              m_Density;
+  Batch<TReal, N>      m_Batches[capacity];
+  float *              m_Out[capacity];
+  int                  m_Count{ 0 };
+};
 
 template <typename TReal, int N>
 void
@@ -371,54 +458,18 @@ DeriveMember(const CellGroup &   group,
              const Derivatives & derivatives,
              const Band &        band)
 {
-  using Lanes = typename Vector<TReal>::Type;
-  static constexpr Exponents<N> exponents;
-  TReal * const                 shape = reinterpret_cast<TReal *>(derivatives.scratch);
-  TReal * const                 density = shape + 12 * derivatives.shapeModes;
-  for (int i = 0; i < 12 * derivatives.shapeModes; ++i)
-  {
-    shape[i] = static_cast<TReal>(derivatives.shape[member][i]);
-  }
-  const double scale = groupFrame.halfDepth[member] * group.scale;
-  for (int m = 0; m < derivatives.densityModes; ++m)
-  {
-    const double * mode = derivatives.density[m] + derivatives.coefficient[member];
-    for (int p = 0; p < CoefficientCount(N); ++p)
-    {
-      density[m * CoefficientCount(N) + p] = static_cast<TReal>(scale * exponents.multinomial[p] * mode[p]);
-    }
-  }
-  ForEachBatch<TReal, N>(
-    groupFrame,
-    member,
-    frame,
-    group.coefficients[member],
-    group.scale,
-    group.offset,
-    derivatives.shapeModes > 0,
-    derivatives.densityModes > 0,
-    [&](const Batch<TReal, N> & batch, int row, int column) {
-      float * out = band.data + (row - band.firstRow) * band.stride + column;
-      Accumulate(out, batch.value);
-      for (int m = 0; m < derivatives.shapeModes; ++m)
-      {
-        out += derivatives.plane;
-        Lanes sum{};
-        Repeat<12>([&](int q) {
-          sum += shape[12 * m + q] * batch.k[q / 4][q % 4];
-        });
-        Accumulate(out, sum);
-      }
-      for (int m = 0; m < derivatives.densityModes; ++m)
-      {
-        out += derivatives.plane;
-        Lanes sum{};
-        Repeat<CoefficientCount(N)>([&](int p) {
-          sum += density[m * CoefficientCount(N) + p] * batch.basis[p];
-        });
-        Accumulate(out, sum);
-      }
-    });
+  PlaneAdder<TReal, N> adder(derivatives, band);
+  adder.SetModes(member, groupFrame.halfDepth[member] * group.scale);
+  ForEachBatch<TReal, N>(groupFrame,
+                         member,
+                         frame,
+                         group.coefficients[member],
+                         group.scale,
+                         group.offset,
+                         derivatives.shapeModes > 0,
+                         derivatives.densityModes > 0,
+                         adder);
+  adder.Flush();
 }
 
 inline void
@@ -447,6 +498,59 @@ Sum(const TLanes & values)
   return sum;
 }
 
+/** Sums batches times the band's weights. */
+template <typename TReal, int N>
+class BatchSummer
+{
+public:
+  using Lanes = typename Vector<TReal>::Type;
+
+  BatchSummer(const Band & band, bool withShape)
+    : m_Band(band)
+    , m_WithShape(withShape)
+  {}
+
+  Batch<TReal, N> &
+  Slot()
+  {
+    return m_Batch;
+  }
+  void
+  Done(int row, int column)
+  {
+    Lanes weights;
+    LoadWeights(m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column, weights);
+    for (int p = 0; p < CoefficientCount(N); ++p)
+    {
+      m_Basis[p] += weights * m_Batch.basis[p];
+    }
+    for (int q = 0; m_WithShape && q < 12; ++q)
+    {
+      m_Positions[q] += weights * m_Batch.k[q / 4][q % 4];
+    }
+  }
+  void
+  Write(double scale, double * basis, double * positions) const
+  {
+    static constexpr Exponents<N> exponents;
+    for (int p = 0; p < CoefficientCount(N); ++p)
+    {
+      basis[p] = scale * exponents.multinomial[p] * Sum(m_Basis[p]);
+    }
+    for (int q = 0; m_WithShape && q < 12; ++q)
+    {
+      positions[q] = Sum(m_Positions[q]);
+    }
+  }
+
+private:
+  const Band &    m_Band;
+  bool            m_WithShape;
+  Batch<TReal, N> m_Batch;
+  Lanes           m_Basis[CoefficientCount(N)] = {};
+  Lanes           m_Positions[12] = {};
+};
+
 template <typename TReal, int N>
 void
 AdjoinMember(const CellGroup &  group,
@@ -456,38 +560,11 @@ AdjoinMember(const CellGroup &  group,
              const Adjoint &    adjoint,
              const Band &       band)
 {
-  using Lanes = typename Vector<TReal>::Type;
-  static constexpr Exponents<N> exponents;
-  Lanes                         basis[CoefficientCount(N)] = {}, positions[12] = {};
-  const bool                    withShape = adjoint.positions[member] != nullptr;
-  ForEachBatch<TReal, N>(groupFrame,
-                         member,
-                         frame,
-                         group.coefficients[member],
-                         group.scale,
-                         group.offset,
-                         withShape,
-                         true,
-                         [&](const Batch<TReal, N> & batch, int row, int column) {
-                           Lanes weights;
-                           LoadWeights(band.data + (row - band.firstRow) * band.stride + column, weights);
-                           for (int p = 0; p < CoefficientCount(N); ++p)
-                           {
-                             basis[p] += weights * batch.basis[p];
-                           }
-                           for (int q = 0; withShape && q < 12; ++q)
-                           {
-                             positions[q] += weights * batch.k[q / 4][q % 4];
-                           }
-                         });
-  for (int p = 0; p < CoefficientCount(N); ++p)
-  {
-    adjoint.basis[member][p] = groupFrame.halfDepth[member] * exponents.multinomial[p] * Sum(basis[p]);
-  }
-  for (int q = 0; withShape && q < 12; ++q)
-  {
-    adjoint.positions[member][q] = Sum(positions[q]);
-  }
+  const bool            withShape = adjoint.positions[member] != nullptr;
+  BatchSummer<TReal, N> summer(band, withShape);
+  ForEachBatch<TReal, N>(
+    groupFrame, member, frame, group.coefficients[member], group.scale, group.offset, withShape, true, summer);
+  summer.Write(groupFrame.halfDepth[member], adjoint.basis[member], adjoint.positions[member]);
 }
 
 /** Calls function(member, frame) for the cells of the group that the band sees. */
