@@ -57,6 +57,11 @@ public:
   Vector3
   GetPixelPoint(double column, double row) const;
 
+  /** Where a point (mm) appears: column and row, fractional, of any size. With a point source, NaN for a point in or
+   * behind the plane through the source that is parallel to the detector. */
+  Vector2
+  ProjectPoint(const Vector3 & point) const;
+
   /** A view of the box (lower, upper corner, mm) with the detector `sourceToDetector` mm from the source, the box's
    * centre at `sourceToCentre` mm, looking along the unit vector `beam` with image rows along -`up`, and just large
    * enough that the box projects inside; square pixels, the longer side `pixels` long. */

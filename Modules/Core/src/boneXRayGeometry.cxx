@@ -88,6 +88,21 @@ XRayGeometry::GetPixelPoint(double column, double row) const
          row * m_View.spacing.y() * m_View.detectorV;
 }
 
+Vector2
+XRayGeometry::ProjectPoint(const Vector3 & point) const
+{
+  const Vector3 normal = m_View.detectorU.cross(m_View.detectorV);
+  const Vector3 ray = m_View.parallel ? m_View.direction : Vector3(point - m_View.source);
+  const double  along = ray.dot(normal), left = (m_View.detectorOrigin - point).dot(normal);
+  const double  whole = m_View.parallel ? along : (m_View.detectorOrigin - m_View.source).dot(normal);
+  if (!m_View.parallel && !(along * whole > 0))
+  {
+    return Vector2::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const Vector3 hit = point + (left / along) * ray - m_View.detectorOrigin;
+  return { hit.dot(m_View.detectorU) / m_View.spacing.x(), hit.dot(m_View.detectorV) / m_View.spacing.y() };
+}
+
 XRayGeometry::View
 XRayGeometry::Framing(const Vector3 & lower,
                       const Vector3 & upper,

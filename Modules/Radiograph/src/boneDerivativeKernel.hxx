@@ -53,12 +53,14 @@ struct Lobatto<6>
                                   0.27742918851774318, 0.18923747814892349, 1.0 / 30.0 };
 };
 
-/** Exponents in the coefficients' order, and multinomials. */
+/** Multinomials in the coefficients' order, and for each product of degree N of barycentric coordinates one of degree
+ * N - 1 and the vertex whose coordinate makes it up. */
 template <int N>
 struct Exponents
 {
-  int    of[CoefficientCount(N)][4]{};
   double multinomial[CoefficientCount(N)]{};
+  int    part[CoefficientCount(N)]{};
+  int    vertex[CoefficientCount(N)]{};
   constexpr Exponents()
   {
     int p = 0;
@@ -69,12 +71,17 @@ struct Exponents
         for (int k = N - i - j; k >= 0; --k, ++p)
         {
           const int l = N - i - j - k;
-          of[p][0] = i;
-          of[p][1] = j;
-          of[p][2] = k;
-          of[p][3] = l;
           multinomial[p] = factorial[N] / (factorial[i] * factorial[j] * factorial[k] * factorial[l]);
         }
+      }
+    }
+    for (int q = 0; N > 0 && q < CoefficientCount(N - 1); ++q)
+    {
+      const int raised[4] = { q, raise.second[q], raise.third[q], raise.third[q] + 1 };
+      for (int v = 0; v < 4; ++v)
+      {
+        part[raised[v]] = q;
+        vertex[raised[v]] = v;
       }
     }
   }
@@ -99,25 +106,33 @@ Repeat(const TFunction & function)
   }
 }
 
-/** mu0^i mu1^j mu2^k mu3^l in the coefficients' order. */
+/** mu0^i mu1^j mu2^k mu3^l in the coefficients' order; `below` are those of one degree less. */
+template <int N, typename TLanes>
+inline void
+RaiseProducts(const TLanes (&mu)[4], const TLanes * below, TLanes (&products)[CoefficientCount(N)])
+{
+  static constexpr Exponents<N> exponents;
+  Repeat<CoefficientCount(N)>([&](int p) { products[p] = below[exponents.part[p]] * mu[exponents.vertex[p]]; });
+}
+
 template <int N, typename TLanes>
 inline void
 Products(const TLanes (&mu)[4], TLanes (&products)[CoefficientCount(N)])
 {
-  static constexpr Exponents<N> exponents;
-  TLanes                        power[4][N + 1];
-  for (int i = 0; i < 4; ++i)
+  if constexpr (N == 0)
   {
-    power[i][0] = TLanes{} + 1;
-    for (int n = 1; n <= N; ++n)
-    {
-      power[i][n] = n == 1 ? mu[i] : power[i][n - 1] * mu[i];
-    }
+    products[0] = TLanes{} + 1;
   }
-  Repeat<CoefficientCount(N)>([&](int p) {
-    const int(&e)[4] = exponents.of[p];
-    products[p] = (power[0][e[0]] * power[1][e[1]]) * (power[2][e[2]] * power[3][e[3]]);
-  });
+  else if constexpr (N == 1)
+  {
+    Repeat<4>([&](int i) { products[i] = mu[i]; });
+  }
+  else
+  {
+    TLanes below[CoefficientCount(N - 1)];
+    Products<N - 1>(mu, below);
+    RaiseProducts<N>(mu, below, products);
+  }
 }
 
 /** A cell's density for derivatives, multinomials and the factor h within. */
@@ -223,15 +238,22 @@ SetBatch(const RayStarts<TReal> &              rays,
       mu[i] = g == 0 ? from[i] : (g == nodes - 1 ? to[i] : ofStart * from[i] + ofEnd * to[i]);
     }
     const Lanes weight = TReal(Lobatto<nodes>::w[g]) * length;
-    if (withDensity)
-    {
-      Lanes products[CoefficientCount(N)];
-      Products<N>(mu, products);
-      Repeat<CoefficientCount(N)>(
-        [&](int p) { batch.basis[p] = g == 0 ? weight * products[p] : batch.basis[p] + weight * products[p]; });
-    }
     Lanes products[CoefficientCount(below)], rate[4];
     Products<below>(mu, products);
+    if (withDensity)
+    {
+      Lanes ofDegree[CoefficientCount(N)];
+      if constexpr (N > 0)
+      {
+        RaiseProducts<N>(mu, products, ofDegree);
+      }
+      else
+      {
+        ofDegree[0] = products[0];
+      }
+      Repeat<CoefficientCount(N)>(
+        [&](int p) { batch.basis[p] = g == 0 ? weight * ofDegree[p] : batch.basis[p] + weight * ofDegree[p]; });
+    }
     for (int i = 0; i < (N > 0 ? 4 : 1); ++i)
     {
       Lanes sums[2] = { none, none };
@@ -546,7 +568,7 @@ public:
 private:
   const Band &    m_Band;
   bool            m_WithShape;
-  Batch<TReal, N> m_Batch;
+  Batch<TReal, N> m_Batch{};
   Lanes           m_Basis[CoefficientCount(N)] = {};
   Lanes           m_Positions[12] = {};
 };
