@@ -74,7 +74,7 @@ RtkMatrix(const RtkProjection & projection);
 /** A parallel beam's detector is put at the source's distance beyond the isocentre. */
 XRayGeometry::View
 FromRtk(const RtkProjection & projection, const RtkGrid & grid);
-/** The detector's origin projects the isocentre (0, 0, 0 of physical space) perpendicularly: offsets say the rest. */
+/** With pixel (0, 0) at the origin of the projection image: views of one size then make one stack of images. */
 void
 ToRtk(const XRayGeometry::View & view, RtkProjection & projection, RtkGrid & grid);
 /** \} */

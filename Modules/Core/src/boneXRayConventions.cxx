@@ -234,7 +234,9 @@ ToRtk(const XRayGeometry::View & view, RtkProjection & p, RtkGrid & grid)
     p.inPlaneAngle = -perRadian * std::atan2(frame(1, 0), frame(0, 0));
   }
   const Vector3 origin = frame * view.detectorOrigin;
-  grid.origin = origin.head<2>();
+  grid.origin = Vector2::Zero();
+  p.projectionOffsetX = origin.x();
+  p.projectionOffsetY = origin.y();
   if (view.parallel)
   {
     p.sourceToIsocenter = std::abs(origin.z());

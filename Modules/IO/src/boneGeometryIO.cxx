@@ -15,6 +15,22 @@ namespace
 {
 using nlohmann::json;
 
+std::array<int, 2>
+SizeMember(const json & object, const char * name)
+{
+  const Eigen::VectorXd numbers = NumbersMember(object, name, 2);
+  std::array<int, 2>    size{};
+  for (int k = 0; k < 2; ++k)
+  {
+    if (!(numbers[k] >= 1 && numbers[k] <= std::numeric_limits<int>::max()) || numbers[k] != std::floor(numbers[k]))
+    {
+      Refuse("'", name, "' must be two positive whole numbers, columns and rows");
+    }
+    size[k] = static_cast<int>(numbers[k]);
+  }
+  return size;
+}
+
 XRayGeometry::View
 ToView(const json & object)
 {
@@ -31,16 +47,76 @@ ToView(const json & object)
   view.detectorU = NumbersMember(object, "detectorU", 3);
   view.detectorV = NumbersMember(object, "detectorV", 3);
   view.spacing = NumbersMember(object, "spacing", 2);
-  const Eigen::VectorXd size = NumbersMember(object, "size", 2);
-  for (int k = 0; k < 2; ++k)
-  {
-    if (!(size[k] >= 1 && size[k] <= std::numeric_limits<int>::max()) || size[k] != std::floor(size[k]))
-    {
-      Refuse("'size' must be two positive whole numbers, columns and rows");
-    }
-    view.size[k] = static_cast<int>(size[k]);
-  }
+  view.size = SizeMember(object, "size");
   return view;
+}
+
+XRayGeometry::View
+MatrixToView(const json & object)
+{
+  RequireMembersAmong(object, { "matrix", "size", "columnSpacing" });
+  const json &     rows = object["matrix"];
+  ProjectionMatrix matrix;
+  if (!rows.is_array() || rows.size() != 3)
+  {
+    Refuse("'matrix' must be a list of 3 rows of 4 numbers");
+  }
+  for (int r = 0; r < 3; ++r)
+  {
+    matrix.row(r) = NumbersMember(json{ { "matrix's row", rows[r] } }, "matrix's row", 4).transpose();
+  }
+  return FromProjectionMatrix(matrix, SizeMember(object, "size"), NumberMember(object, "columnSpacing"));
+}
+
+XRayGeometry::View
+PlastimatchToView(const json & object)
+{
+  RequireMembersAmong(object, { "nrm", "vup", "sad", "sid", "isocenter", "dim", "detectorSize", "imageCenter" });
+  PlastimatchView view;
+  view.nrm = NumbersMember(object, "nrm", 3);
+  view.vup = NumbersMember(object, "vup", 3);
+  view.sad = NumberMember(object, "sad");
+  view.sid = NumberMember(object, "sid");
+  view.isocenter = NumbersMember(object, "isocenter", 3);
+  view.dim = SizeMember(object, "dim");
+  view.detectorSize = NumbersMember(object, "detectorSize", 2);
+  view.imageCenter = NumbersMember(object, "imageCenter", 2);
+  return FromPlastimatch(view);
+}
+
+/** The views of an object; files that it names lie in `folder`. */
+std::vector<XRayGeometry::View>
+ToViews(const json & object, const std::string & folder)
+{
+  if (object.is_object() && object.contains("matrix"))
+  {
+    return { MatrixToView(object) };
+  }
+  if (object.is_object() && object.contains("nrm"))
+  {
+    return { PlastimatchToView(object) };
+  }
+  if (!object.is_object() || !object.contains("rtk"))
+  {
+    return { ToView(object) };
+  }
+  RequireMembersAmong(object, { "rtk", "size", "spacing", "origin", "rowsDown" });
+  RtkGrid grid;
+  grid.size = SizeMember(object, "size");
+  grid.spacing = NumbersMember(object, "spacing", 2);
+  grid.origin = object.contains("origin") ? Vector2(NumbersMember(object, "origin", 2)) : Vector2(0, 0);
+  if (object.contains("rowsDown") && !object["rowsDown"].is_boolean())
+  {
+    Refuse("'rowsDown' must be true or false");
+  }
+  grid.rowsDown = object.value("rowsDown", false);
+  const std::string               name = TextMember(object, "rtk");
+  std::vector<XRayGeometry::View> views;
+  for (const RtkProjection & projection : ReadRtkGeometry(name.front() == '/' ? name : folder + name))
+  {
+    views.push_back(FromRtk(projection, grid));
+  }
+  return views;
 }
 
 json
@@ -54,6 +130,43 @@ FromView(const XRayGeometry::View & view)
   object["size"] = view.size;
   object["spacing"] = ToJson(view.spacing);
   return object;
+}
+
+json
+FromView(const XRayGeometry::View & view, GeometryConvention convention)
+{
+  json object;
+  if (convention == GeometryConvention::Matrix)
+  {
+    if (view.parallel)
+    {
+      Refuse("a parallel beam's matrix does not tell where the detector is: write the view itself");
+    }
+    const ProjectionMatrix matrix = ToProjectionMatrix(view);
+    for (int r = 0; r < 3; ++r)
+    {
+      object["matrix"].push_back(ToJson(Eigen::Vector4d(matrix.row(r).transpose())));
+    }
+    object["size"] = view.size;
+    object["columnSpacing"] = view.spacing.x();
+    return object;
+  }
+  if (convention == GeometryConvention::Plastimatch)
+  {
+    const Vector3 normal = view.detectorU.cross(view.detectorV);
+    const double  sad = std::abs(normal.dot(view.source));
+    const auto    to = ToPlastimatch(view, sad > 0 ? sad : std::abs(normal.dot(view.detectorOrigin - view.source)));
+    object["nrm"] = ToJson(to.nrm);
+    object["vup"] = ToJson(to.vup);
+    object["sad"] = to.sad;
+    object["sid"] = to.sid;
+    object["isocenter"] = ToJson(to.isocenter);
+    object["dim"] = to.dim;
+    object["detectorSize"] = ToJson(to.detectorSize);
+    object["imageCenter"] = ToJson(to.imageCenter);
+    return object;
+  }
+  return FromView(view);
 }
 } // namespace
 
@@ -71,22 +184,27 @@ ReadGeometry(const std::string & path)
   {
     const std::string which = list.size() > 1 ? Say(path, ": view ", views.size() + 1) : path;
     NamingFile(which, [&] {
-      auto geometry = XRayGeometry::New();
-      geometry->SetView(ToView(object));
-      views.push_back(geometry);
+      for (const auto & view : ToViews(object, path.substr(0, path.find_last_of('/') + 1)))
+      {
+        auto geometry = XRayGeometry::New();
+        geometry->SetView(view);
+        views.push_back(geometry);
+      }
     });
   }
   return views;
 }
 
 void
-WriteGeometry(const std::vector<XRayGeometry::Pointer> & views, const std::string & path)
+WriteGeometry(const std::vector<XRayGeometry::Pointer> & views, const std::string & path, GeometryConvention convention)
 {
   json list = json::array();
-  for (const auto & view : views)
-  {
-    list.push_back(FromView(view->GetView()));
-  }
+  NamingFile(path, [&] {
+    for (const auto & view : views)
+    {
+      list.push_back(FromView(view->GetView(), convention));
+    }
+  });
   WriteFileAtomically(path, (list.size() == 1 ? list.front() : list).dump(2) + '\n');
 }
 } // namespace bone

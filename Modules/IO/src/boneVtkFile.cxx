@@ -14,11 +14,11 @@
 #include <vtkOutputWindow.h>
 #include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
-#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLUtilities.h>
 
 #include <algorithm>
 #include <cctype>
@@ -270,6 +270,14 @@ RequireExtension(const std::string & path, const std::vector<std::string> & exte
     known += (known.empty() ? "" : " or ") + extension;
   }
   throw IOError(path, "the name must end in " + known);
+}
+
+vtkSmartPointer<vtkXMLDataElement>
+ReadXmlFile(const std::string & path)
+{
+  RequireReadableFile(path);
+  const QuietVtk quiet;
+  return vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
 }
 
 vtkSmartPointer<vtkUnstructuredGrid>

@@ -7,6 +7,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
 
 #include <string>
 #include <vector>
@@ -36,6 +37,10 @@ vtkSmartPointer<vtkPolyData>
 ReadPlyFile(const std::string & path);
 vtkSmartPointer<vtkPolyData>
 ReadStlFile(const std::string & path);
+
+/** The root element of an XML file, or null where it is none. */
+vtkSmartPointer<vtkXMLDataElement>
+ReadXmlFile(const std::string & path);
 
 /** Write a .vtu or .vtp file to the temporary path, without committing. */
 void

@@ -109,6 +109,99 @@ TEST_F(GeometryIOTest, SaysWhichMemberIsMissingUnknownOrWrong)
   EXPECT_THAT(ErrorOfReading("[{" + m_Good + "}, {}]"), AllOf(HasSubstr("view 2"), HasSubstr("is missing")));
 }
 
+namespace
+{
+/** A view of plastimatch's handedness, the detector before the source. */
+XRayGeometry::Pointer
+MakeUsualView(double angle)
+{
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  XRayGeometry::View    view;
+  view.source = turn * Vector3(10, -900, 20);
+  view.detectorOrigin = turn * Vector3(-100, 200, 70);
+  view.detectorU = turn * Vector3(1, 0, 0);
+  view.detectorV = turn * Vector3(0, 0, -1);
+  view.size = { { 300, 201 } };
+  view.spacing = { 0.3, 0.4 };
+  auto geometry = XRayGeometry::New();
+  geometry->SetView(view);
+  return geometry;
+}
+
+void
+ExpectClose(const XRayGeometry & a, const XRayGeometry & b)
+{
+  EXPECT_EQ(a.GetView().size, b.GetView().size);
+  EXPECT_NEAR((a.GetView().source - b.GetView().source).norm(), 0, 1e-8);
+  for (const Vector2 & pixel : { Vector2(0, 0), Vector2(299, 0), Vector2(0, 200) })
+  {
+    EXPECT_NEAR((a.GetPixelPoint(pixel[0], pixel[1]) - b.GetPixelPoint(pixel[0], pixel[1])).norm(), 0, 1e-8);
+  }
+}
+} // namespace
+
+TEST_F(GeometryIOTest, OtherConventionsComeBack)
+{
+  const std::vector<XRayGeometry::Pointer> views = { MakeUsualView(0.3), MakeUsualView(-2) };
+  for (auto convention : { GeometryConvention::Matrix, GeometryConvention::Plastimatch })
+  {
+    WriteGeometry(views, Path("g.json"), convention);
+    const auto back = ReadGeometry(Path("g.json"));
+    ASSERT_EQ(back.size(), views.size());
+    for (std::size_t i = 0; i < views.size(); ++i)
+    {
+      ExpectClose(*back[i], *views[i]);
+    }
+    EXPECT_THAT(ErrorOf([&] { WriteGeometry({ MakeView(true, 0) }, Path("p.json"), convention); }),
+                HasSubstr("parallel beam"));
+  }
+}
+
+TEST_F(GeometryIOTest, RtksFilesComeBackThroughAJsonThatNamesThem)
+{
+  const std::vector<XRayGeometry::Pointer> views = { MakeUsualView(0.3), MakeUsualView(-2) };
+  const RtkGrid                            grid = WriteRtkGeometry(views, Path("g.xml"));
+  EXPECT_TRUE(grid.rowsDown);
+  WriteText("g.json", R"({"rtk": "g.xml", "size": [300, 201], "spacing": [0.3, 0.4], "rowsDown": true})");
+  const auto back = ReadGeometry(Path("g.json"));
+  ASSERT_EQ(back.size(), 2u);
+  ExpectClose(*back[0], *views[0]);
+  ExpectClose(*back[1], *views[1]);
+  EXPECT_THAT(ErrorOf([&] { WriteRtkGeometry({ views[0], MakeView(true, 0) }, Path("h.xml")); }), HasSubstr("stack"));
+}
+
+TEST_F(GeometryIOTest, ReadsAnRtkFileWithCommonParameters)
+{
+  const std::string head = "<?xml version=\"1.0\"?>\n<!DOCTYPE RTKGEOMETRY>\n<RTKThreeDCircularGeometry version=\"3\">\n";
+  const std::string tail = "</RTKThreeDCircularGeometry>\n";
+  const std::string common =
+    "<SourceToIsocenterDistance>1000</SourceToIsocenterDistance><SourceToDetectorDistance>1500</SourceToDetectorDistance>";
+  WriteText("g.xml",
+            head + common +
+              "<Projection><GantryAngle>0</GantryAngle><Matrix>-1500 0 0 0 0 -1500 0 0 0 0 1 -1000</Matrix></Projection>"
+              "<Projection><GantryAngle>90</GantryAngle><ProjectionOffsetX>5</ProjectionOffsetX></Projection>" +
+              tail);
+  const auto projections = ReadRtkGeometry(Path("g.xml"));
+  ASSERT_EQ(projections.size(), 2u);
+  EXPECT_EQ(projections[1].gantryAngle, 90);
+  EXPECT_EQ(projections[1].projectionOffsetX, 5);
+  EXPECT_EQ(projections[1].sourceToDetector, 1500);
+
+  const auto errorOf = [&](const std::string & text) {
+    WriteText("e.xml", text);
+    return ErrorOf([&] { ReadRtkGeometry(Path("e.xml")); });
+  };
+  EXPECT_THAT(errorOf("no XML"), HasSubstr("is no RTK geometry"));
+  EXPECT_THAT(errorOf("<VTKFile/>"), HasSubstr("is no RTK geometry"));
+  EXPECT_THAT(errorOf(head + tail), HasSubstr("no projection"));
+  EXPECT_THAT(errorOf(head + "<Projection><GantryAngle>x</GantryAngle></Projection>" + tail), HasSubstr("GantryAngle"));
+  EXPECT_THAT(errorOf(head + common + "<Projection><Matrix>1 2 3 4 5 6 7 8 9 10 11 12</Matrix></Projection>" + tail),
+              HasSubstr("does not follow"));
+  EXPECT_THAT(
+    errorOf(head + "<RadiusCylindricalDetector>900</RadiusCylindricalDetector><Projection/>" + tail), HasSubstr("flat"));
+  EXPECT_THAT(ErrorOf([&] { ReadRtkGeometry(Path("no.xml")); }), HasSubstr("no such file"));
+}
+
 TEST_F(GeometryIOTest, AWriteThatFailsLeavesNothing)
 {
   EXPECT_THAT(ErrorOf([&] { WriteGeometry({ MakeView(false, 0) }, Path("no/g.json")); }), HasSubstr("no folder"));

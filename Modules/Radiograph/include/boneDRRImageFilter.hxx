@@ -22,6 +22,14 @@ void
 DRRImageFilter<TMesh, TOutputImage>::VerifyPreconditions() ITKv5_CONST
 {
   Superclass::VerifyPreconditions();
+  const auto conversion = this->GetHUToAttenuation();
+  if (conversion != HUToAttenuation::None && conversion != HUToAttenuation::WaterScaled)
+  {
+    itkExceptionMacro("HUToAttenuation is "
+                      << conversion
+                      << ", which is no line: a polynomial would not stay one. Convert the CT and fit the model to the "
+                         "result (AttenuationImageFilter), then leave it at None.");
+  }
   if (m_MinimumRegion > m_MaximumRegion)
   {
     itkExceptionMacro("MinimumRegion (" << m_MinimumRegion << ") is above MaximumRegion (" << m_MaximumRegion
@@ -76,7 +84,7 @@ DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(float * integrals)
   }
   this->VerifyMesh(points);
 
-  const auto            conversion = this->GetConversion();
+  const auto            conversion = this->GetCurve().Line();
   MeshRadiographOptions options{ m_MinimumRegion, m_MaximumRegion, conversion.scale, conversion.offset };
   const LoopRunner      loops = this->MakeLoops();
   const auto &          view = this->GetGeometry()->GetView();

@@ -22,7 +22,8 @@ namespace bone
  * integral from the source (parallel: from infinity) to the pixel's centre, in the density's unit times mm, or without
  * unit where HUToAttenuation is not None. The whole image is always made.
  *
- * Parameters: HUToAttenuation (default None), WaterAttenuation (per mm, default that at 60 keV).
+ * Parameters: HUToAttenuation (default None), WaterAttenuation (per mm, default that at 60 keV), BoneSlope (Bilinear)
+ * and AttenuationTable (Table), see AttenuationCurve.
  *
  * \tparam TOutputImage a three-dimensional image of a scalar pixel type. */
 template <typename TOutputImage>
@@ -55,6 +56,10 @@ public:
   itkGetConstMacro(HUToAttenuation, HUToAttenuation);
   itkSetMacro(WaterAttenuation, double);
   itkGetConstMacro(WaterAttenuation, double);
+  itkSetMacro(BoneSlope, double);
+  itkGetConstMacro(BoneSlope, double);
+  itkSetMacro(AttenuationTable, std::vector<AttenuationPoint>);
+  itkGetConstReferenceMacro(AttenuationTable, std::vector<AttenuationPoint>);
 
 protected:
   RadiographSource();
@@ -73,10 +78,10 @@ protected:
   virtual void
   ComputeIntegrals(float * integrals) = 0;
 
-  LinearConversion
-  GetConversion() const
+  AttenuationCurve
+  GetCurve() const
   {
-    return MakeConversion(m_HUToAttenuation, m_WaterAttenuation);
+    return { m_HUToAttenuation, m_WaterAttenuation, m_BoneSlope, m_AttenuationTable };
   }
   /** Loops on this filter's threads; the main one reports progress and stops on abort. */
   LoopRunner
@@ -88,6 +93,9 @@ protected:
 private:
   HUToAttenuation m_HUToAttenuation{ HUToAttenuation::None };
   double          m_WaterAttenuation{ WaterAttenuationAt60keV };
+  double          m_BoneSlope{ AttenuationCurve().boneSlope };
+
+  std::vector<AttenuationPoint> m_AttenuationTable;
 };
 } // namespace bone
 

@@ -27,6 +27,22 @@ RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
   {
     itkExceptionMacro("WaterAttenuation is " << m_WaterAttenuation << " per mm; it must be positive.");
   }
+  if (!(m_BoneSlope >= 0) || !std::isfinite(m_BoneSlope))
+  {
+    itkExceptionMacro("BoneSlope is " << m_BoneSlope << " per mm and HU; it must not be negative.");
+  }
+  const auto & table = m_AttenuationTable;
+  const auto   usable = [](const AttenuationPoint & p) { return std::isfinite(p.hu) && p.attenuation >= 0; };
+  bool         rising = std::all_of(table.begin(), table.end(), usable);
+  for (std::size_t i = 1; i < table.size(); ++i)
+  {
+    rising = rising && table[i - 1].hu < table[i].hu;
+  }
+  if (m_HUToAttenuation == HUToAttenuation::Table && (table.empty() || !rising))
+  {
+    itkExceptionMacro("AttenuationTable ("
+                      << table << ") must hold points of rising HU with attenuations that are not negative.");
+  }
 }
 
 template <typename TOutputImage>
@@ -99,6 +115,8 @@ RadiographSource<TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent)
   Superclass::PrintSelf(os, indent);
   os << indent << "HUToAttenuation: " << m_HUToAttenuation << '\n';
   os << indent << "WaterAttenuation: " << m_WaterAttenuation << '\n';
+  os << indent << "BoneSlope: " << m_BoneSlope << '\n';
+  os << indent << "AttenuationTable: " << m_AttenuationTable << '\n';
 }
 } // namespace bone
 

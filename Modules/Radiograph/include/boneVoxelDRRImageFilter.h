@@ -19,8 +19,8 @@ namespace bone
  * voxel counts where its label is MaskLabel; others are 0, and between a voxel that counts and one that does not the
  * value falls linearly.
  *
- * Parameters: MaskLabel (default 0: any label but 0); HUToAttenuation and WaterAttenuation; with WaterScaled, values
- * below -1000 HU (padding) count as air.
+ * Parameters: MaskLabel (default 0: any label but 0); HUToAttenuation and its numbers, taken voxel
+ * by voxel before interpolation; values below -1000 HU (padding) count as air.
  *
  * Refused: a mask on another grid, and one without a voxel of the label. */
 template <typename TInputImage = itk::Image<float, 3>,

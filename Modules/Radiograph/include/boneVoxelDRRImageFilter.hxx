@@ -103,8 +103,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
     }
   }
   grid.values.resize(region.GetNumberOfPixels());
-  const auto   conversion = this->GetConversion();
-  const bool   clamp = this->GetHUToAttenuation() != HUToAttenuation::None;
+  const auto   curve = this->GetCurve();
   const auto   rows = static_cast<std::size_t>(grid.size[1]);
   const auto   slice = rows * grid.size[0];
   const auto & first = region.GetIndex();
@@ -120,9 +119,8 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
       float *      to = grid.values.data() + z * slice + y * grid.size[0];
       for (int x = 0; x < grid.size[0]; ++x)
       {
-        const double value = conversion.scale * from[x] + conversion.offset;
-        const bool   counts = label == nullptr || this->IsMasked(label[x]);
-        to[x] = counts ? static_cast<float>(clamp && value < 0 ? 0.0 : value) : 0.0f;
+        const bool counts = label == nullptr || this->IsMasked(label[x]);
+        to[x] = counts ? static_cast<float>(curve.At(from[x])) : 0.0f;
       }
     }
   });

@@ -1,0 +1,84 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneIntensityImageFilter_h
+#define boneIntensityImageFilter_h
+
+#include <itkUnaryFunctorImageFilter.h>
+
+#include <cmath>
+
+namespace bone
+{
+/** The functor of IntensityImageFilter. */
+template <typename TInput, typename TOutput>
+struct IntensityFunctor
+{
+  double incident{ 1.0 };
+  TOutput
+  operator()(const TInput & integral) const
+  {
+    return static_cast<TOutput>(incident * std::exp(-static_cast<double>(integral)));
+  }
+  bool
+  operator==(const IntensityFunctor & other) const
+  {
+    return incident == other.incident;
+  }
+  bool
+  operator!=(const IntensityFunctor & other) const
+  {
+    return !(*this == other);
+  }
+};
+
+/** \class IntensityImageFilter
+ * \brief What a detector sees: Beer and Lambert's I = I0 exp(-integral of mu), for one energy and without scatter.
+ *
+ * Input: a radiograph of line integrals of attenuation (HUToAttenuation not None). Parameter: IncidentIntensity I0
+ * (default 1), for example the photons per pixel that NoiseImageFilter then draws from. */
+template <typename TInputImage, typename TOutputImage = TInputImage>
+class IntensityImageFilter
+  : public itk::UnaryFunctorImageFilter<
+      TInputImage,
+      TOutputImage,
+      IntensityFunctor<typename TInputImage::PixelType, typename TOutputImage::PixelType>>
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(IntensityImageFilter);
+  using Self = IntensityImageFilter;
+  using FunctorType = IntensityFunctor<typename TInputImage::PixelType, typename TOutputImage::PixelType>;
+  using Superclass = itk::UnaryFunctorImageFilter<TInputImage, TOutputImage, FunctorType>;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(IntensityImageFilter, UnaryFunctorImageFilter);
+
+  void
+  SetIncidentIntensity(double intensity)
+  {
+    this->SetFunctor(FunctorType{ intensity });
+  }
+  double
+  GetIncidentIntensity() const
+  {
+    return this->GetFunctor().incident;
+  }
+
+protected:
+  IntensityImageFilter() = default;
+  ~IntensityImageFilter() override = default;
+
+  void
+  VerifyPreconditions() ITKv5_CONST override
+  {
+    Superclass::VerifyPreconditions();
+    if (!(GetIncidentIntensity() > 0) || !std::isfinite(GetIncidentIntensity()))
+    {
+      itkExceptionMacro("IncidentIntensity is " << GetIncidentIntensity() << "; it must be positive.");
+    }
+  }
+};
+} // namespace bone
+
+#endif
