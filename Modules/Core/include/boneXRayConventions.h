@@ -21,8 +21,8 @@ using ProjectionMatrix = Eigen::Matrix<double, 3, 4>;
 ProjectionMatrix
 ToProjectionMatrix(const XRayGeometry::View & view);
 
-/** The view of a point source with a given matrix, of any scale with w > 0 before the source. The matrix says nothing of
- * the detector's distance: `columnSpacing` (mm) does. Refused: a parallel beam, skewed pixel axes (beyond 1e-6). */
+/** The view of a point source with a given matrix, of any scale with w > 0 before the source. The matrix says nothing
+ * of the detector's distance: `columnSpacing` (mm) does. Refused: a parallel beam, skewed pixel axes (beyond 1e-6). */
 XRayGeometry::View
 FromProjectionMatrix(const ProjectionMatrix & matrix, const std::array<int, 2> & size, double columnSpacing);
 
@@ -34,8 +34,8 @@ struct PlastimatchView
   double             sad{ 1000 };    ///< source to isocentre, mm
   double             sid{ 1500 };    ///< source to detector, mm
   Vector3            isocenter{ 0, 0, 0 };
-  std::array<int, 2> dim{ { 128, 128 } }; ///< columns, rows
-  Vector2            detectorSize{ 600, 600 }; ///< width, height, mm
+  std::array<int, 2> dim{ { 128, 128 } };       ///< columns, rows
+  Vector2            detectorSize{ 600, 600 };  ///< width, height, mm
   Vector2            imageCenter{ 63.5, 63.5 }; ///< pixel (column, row) that the isocentre projects to
 };
 XRayGeometry::View

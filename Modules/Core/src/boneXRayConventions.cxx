@@ -160,7 +160,8 @@ ToPlastimatch(const XRayGeometry::View & view, double sad)
   to.isocenter = view.source - sad * normal;
   to.dim = view.size;
   to.detectorSize = view.spacing.cwiseProduct(Vector2(view.size[0], view.size[1]));
-  to.imageCenter = { -toOrigin.dot(view.detectorU) / view.spacing.x(), -toOrigin.dot(view.detectorV) / view.spacing.y() };
+  to.imageCenter = { -toOrigin.dot(view.detectorU) / view.spacing.x(),
+                     -toOrigin.dot(view.detectorV) / view.spacing.y() };
   return to;
 }
 

@@ -19,9 +19,9 @@ RandomView(unsigned int seed, bool parallel = false)
 {
   std::mt19937                           random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto                             vector = [&]() { return Vector3(uniform(random), uniform(random), uniform(random)); };
-  const Eigen::AngleAxisd                turn(3 * uniform(random), vector().normalized());
-  View                                   view;
+  const auto              vector = [&]() { return Vector3(uniform(random), uniform(random), uniform(random)); };
+  const Eigen::AngleAxisd turn(3 * uniform(random), vector().normalized());
+  View                    view;
   view.parallel = parallel;
   view.detectorU = turn * Vector3::UnitX();
   view.detectorV = turn * Vector3(0, seed % 2 == 0 ? 1 : -1, 0);
@@ -123,7 +123,8 @@ TEST(XRayConventions, AMatrixOfIntrinsicsAndPoseIsRead)
 TEST(XRayConventions, PlastimatchsPointsLieWherePlastimatchPutsThem)
 {
   // The geometry file and the image that plastimatch 1.9.4 made of three small blocks, by
-  // drr -i exact -n "0.3 -0.9 0.2" --vup "0.1 0.2 1" --sad 800 --sid 1200 -o "3 -4 5" -r "48 64" -z "120 128" -c "20 30".
+  // drr -i exact -n "0.3 -0.9 0.2" --vup "0.1 0.2 1" --sad 800 --sid 1200 -o "3 -4 5" -r "48 64" -z "120 128" -c "20
+  // 30".
   PlastimatchView from;
   from.nrm = { 0.3, -0.9, 0.2 };
   from.vup = { 0.1, 0.2, 1 };
@@ -134,7 +135,7 @@ TEST(XRayConventions, PlastimatchsPointsLieWherePlastimatchPutsThem)
   from.detectorSize = { 120, 128 };
   from.imageCenter = { 20, 30 };
   const auto       geometry = Geometry(FromPlastimatch(from));
-  ProjectionMatrix matrix; // less the image centre
+  ProjectionMatrix matrix;                                                    // less the image centre
   matrix << 3.78948317e-01, 1.12878229e-01, -6.04704784e-02, -3.82979641e-01, //
     -4.10606007e-02, -1.21102792e-01, -4.83371638e-01, 2.05562883e+00,        //
     -2.57855327e-04, 7.73565928e-04, -1.71903547e-04, 6.71394014e-01;

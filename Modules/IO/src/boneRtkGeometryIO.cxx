@@ -147,8 +147,9 @@ WriteRtkGeometry(const std::vector<XRayGeometry::Pointer> & views, const std::st
       if (own.size != first.size || !own.spacing.isApprox(first.spacing) || own.rowsDown != first.rowsDown ||
           (projections.back().sourceToDetector == 0) != (projections.front().sourceToDetector == 0))
       {
-        Refuse("RTK's projections are one stack of images: the views must agree in size, spacing, handedness and kind of "
-               "beam");
+        Refuse(
+          "RTK's projections are one stack of images: the views must agree in size, spacing, handedness and kind of "
+          "beam");
       }
       grid = own;
     }

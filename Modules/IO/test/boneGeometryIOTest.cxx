@@ -172,15 +172,17 @@ TEST_F(GeometryIOTest, RtksFilesComeBackThroughAJsonThatNamesThem)
 
 TEST_F(GeometryIOTest, ReadsAnRtkFileWithCommonParameters)
 {
-  const std::string head = "<?xml version=\"1.0\"?>\n<!DOCTYPE RTKGEOMETRY>\n<RTKThreeDCircularGeometry version=\"3\">\n";
+  const std::string head =
+    "<?xml version=\"1.0\"?>\n<!DOCTYPE RTKGEOMETRY>\n<RTKThreeDCircularGeometry version=\"3\">\n";
   const std::string tail = "</RTKThreeDCircularGeometry>\n";
-  const std::string common =
-    "<SourceToIsocenterDistance>1000</SourceToIsocenterDistance><SourceToDetectorDistance>1500</SourceToDetectorDistance>";
-  WriteText("g.xml",
-            head + common +
-              "<Projection><GantryAngle>0</GantryAngle><Matrix>-1500 0 0 0 0 -1500 0 0 0 0 1 -1000</Matrix></Projection>"
-              "<Projection><GantryAngle>90</GantryAngle><ProjectionOffsetX>5</ProjectionOffsetX></Projection>" +
-              tail);
+  const std::string common = "<SourceToIsocenterDistance>1000</"
+                             "SourceToIsocenterDistance><SourceToDetectorDistance>1500</SourceToDetectorDistance>";
+  WriteText(
+    "g.xml",
+    head + common +
+      "<Projection><GantryAngle>0</GantryAngle><Matrix>-1500 0 0 0 0 -1500 0 0 0 0 1 -1000</Matrix></Projection>"
+      "<Projection><GantryAngle>90</GantryAngle><ProjectionOffsetX>5</ProjectionOffsetX></Projection>" +
+      tail);
   const auto projections = ReadRtkGeometry(Path("g.xml"));
   ASSERT_EQ(projections.size(), 2u);
   EXPECT_EQ(projections[1].gantryAngle, 90);
@@ -197,8 +199,8 @@ TEST_F(GeometryIOTest, ReadsAnRtkFileWithCommonParameters)
   EXPECT_THAT(errorOf(head + "<Projection><GantryAngle>x</GantryAngle></Projection>" + tail), HasSubstr("GantryAngle"));
   EXPECT_THAT(errorOf(head + common + "<Projection><Matrix>1 2 3 4 5 6 7 8 9 10 11 12</Matrix></Projection>" + tail),
               HasSubstr("does not follow"));
-  EXPECT_THAT(
-    errorOf(head + "<RadiusCylindricalDetector>900</RadiusCylindricalDetector><Projection/>" + tail), HasSubstr("flat"));
+  EXPECT_THAT(errorOf(head + "<RadiusCylindricalDetector>900</RadiusCylindricalDetector><Projection/>" + tail),
+              HasSubstr("flat"));
   EXPECT_THAT(ErrorOf([&] { ReadRtkGeometry(Path("no.xml")); }), HasSubstr("no such file"));
 }
 

@@ -18,8 +18,8 @@ namespace bone
  * \brief Quantum and electronic noise of an image of intensities.
  *
  * Each pixel of expected intensity I becomes a Poisson number of mean I * PhotonsPerUnit, over PhotonsPerUnit, plus a
- * normal number of standard deviation ElectronicNoise. Reproducible: each pixel draws from its own sequence, by Seed and
- * its place in the image, so that threads and regions do not matter.
+ * normal number of standard deviation ElectronicNoise. Reproducible: each pixel draws from its own sequence, by Seed
+ * and its place in the image, so that threads and regions do not matter.
  *
  * Parameters: PhotonsPerUnit (default 1; 0: no quantum noise), ElectronicNoise (in units of the intensity, default 0),
  * Seed (default 1). Refused: intensities that are negative or not finite. */
@@ -63,9 +63,9 @@ protected:
   void
   DynamicThreadedGenerateData(const RegionType & region) override
   {
-    const TImage *                         input = this->GetInput();
-    const RegionType &                     whole = input->GetLargestPossibleRegion();
-    itk::ImageRegionConstIterator<TImage>  from(input, region);
+    const TImage *                        input = this->GetInput();
+    const RegionType &                    whole = input->GetLargestPossibleRegion();
+    itk::ImageRegionConstIterator<TImage> from(input, region);
     for (itk::ImageRegionIterator<TImage> to(this->GetOutput(), region); !to.IsAtEnd(); ++to, ++from)
     {
       std::uint64_t place = 0;
@@ -94,12 +94,12 @@ private:
     {
       itkExceptionMacro("An intensity is " << intensity << "; it must be finite and not negative.");
     }
-    std::seed_seq   seeds{ static_cast<std::uint32_t>(m_Seed),
+    std::seed_seq    seeds{ static_cast<std::uint32_t>(m_Seed),
                          static_cast<std::uint32_t>(m_Seed >> 32),
                          static_cast<std::uint32_t>(place),
                          static_cast<std::uint32_t>(place >> 32) };
     std::minstd_rand random(seeds);
-    double          value = intensity;
+    double           value = intensity;
     if (m_PhotonsPerUnit > 0 && intensity > 0)
     {
       std::poisson_distribution<std::int64_t> photons(intensity * m_PhotonsPerUnit);

@@ -43,12 +43,9 @@ struct Lobatto<5>
 template <>
 struct Lobatto<6>
 {
-  static constexpr double x[] = { -1.0,
-                                  -0.76505532392946469,
-                                  -0.28523151648064510,
-                                  0.28523151648064510,
-                                  0.76505532392946469,
-                                  1.0 };
+  static constexpr double x[] = {
+    -1.0, -0.76505532392946469, -0.28523151648064510, 0.28523151648064510, 0.76505532392946469, 1.0
+  };
   static constexpr double w[] = { 1.0 / 30.0,          0.18923747814892349, 0.27742918851774318,
                                   0.27742918851774318, 0.18923747814892349, 1.0 / 30.0 };
 };
@@ -183,15 +180,15 @@ struct Batch
 /** The pixels at `index` of a row, those below `end`. */
 template <typename TReal, int N>
 inline void
-SetBatch(const RayStarts<TReal> &              rays,
+SetBatch(const RayStarts<TReal> & rays,
          const int (&face)[4],
-         int                                   fronts,
-         const DerivedDensity<TReal, N> &      density,
-         const typename Vector<TReal>::Type &  index,
-         TReal                                 end,
-         bool                                  withShape,
-         bool                                  withDensity,
-         Batch<TReal, N> &                     batch)
+         int                                  fronts,
+         const DerivedDensity<TReal, N> &     density,
+         const typename Vector<TReal>::Type & index,
+         TReal                                end,
+         bool                                 withShape,
+         bool                                 withDensity,
+         Batch<TReal, N> &                    batch)
 {
   using Lanes = typename Vector<TReal>::Type;
   constexpr int nodes = (N + 4) / 2; // exact to degree 2 nodes - 3
@@ -238,7 +235,7 @@ SetBatch(const RayStarts<TReal> &              rays,
       mu[i] = g == 0 ? from[i] : (g == nodes - 1 ? to[i] : ofStart * from[i] + ofEnd * to[i]);
     }
     const Lanes weight = TReal(Lobatto<nodes>::w[g]) * length;
-    Lanes products[CoefficientCount(below)], rate[4];
+    Lanes       products[CoefficientCount(below)], rate[4];
     Products<below>(mu, products);
     if (withDensity)
     {
@@ -287,7 +284,7 @@ SetBatch(const RayStarts<TReal> &              rays,
   }
   // Face terms: positive at the entry since its slope is negative.
   const Lanes in = hit ? atEntry * perEntry : none, out = hit ? atExit * perExit : none;
-  auto openEntry = hit, openExit = hit; // where several planes meet, one counts
+  auto        openEntry = hit, openExit = hit; // where several planes meet, one counts
   for (int plane = 0; plane < 4; ++plane)
   {
     const bool front = plane < fronts;
@@ -321,15 +318,15 @@ SetBatch(const RayStarts<TReal> &              rays,
 /** Sets consumer.Slot() and calls consumer.Done(row, column) for all batches of a cell. */
 template <typename TReal, int N, typename TConsumer>
 inline void
-ForEachBatch(const GroupFrame &    group,
-             int                   member,
-             const Frame &         frame,
-             const double *        coefficients,
-             double                scale,
-             double                offset,
-             bool                  withShape,
-             bool                  withDensity,
-             TConsumer &           consumer)
+ForEachBatch(const GroupFrame & group,
+             int                member,
+             const Frame &      frame,
+             const double *     coefficients,
+             double             scale,
+             double             offset,
+             bool               withShape,
+             bool               withDensity,
+             TConsumer &        consumer)
 {
   using Lanes = typename Vector<TReal>::Type;
   const double                   h = group.halfDepth[member];

@@ -6,6 +6,7 @@
 #include "boneProjectedCells.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace bone
@@ -53,11 +54,13 @@ public:
   At(const CellChord & chord, const Eigen::Vector4d & rates) const
   {
     // Gauss-Legendre, five points: exact to degree 9.
-    static constexpr double x[] = { -0.90617984593866399, -0.53846931010568309, 0.0, 0.53846931010568309,
-                                    0.90617984593866399 };
-    static constexpr double w[] = { 0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                    0.23931433524968324, 0.11846344252809454 };
-    ChordTerms              terms;
+    static constexpr double x[] = {
+      -0.90617984593866399, -0.53846931010568309, 0.0, 0.53846931010568309, 0.90617984593866399
+    };
+    static constexpr double w[] = {
+      0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454
+    };
+    ChordTerms terms;
     for (int g = 0; g < 5; ++g)
     {
       const Barycentric mu = 0.5 * (1 - x[g]) * chord.entry + 0.5 * (1 + x[g]) * chord.exit;
@@ -110,7 +113,7 @@ public:
     , m_Cells(cells)
     , m_Options(options)
     , m_Modes(modes)
-    , m_Projected(points, cells, view, options, std::clamp(view.size[1] / 8, 8, 16))
+    , m_Projected(points, cells, view, options, std::clamp(view.size[1] / 8, 8, 64))
     , m_ShapeModes((modes.pose ? poseModes : 0) + static_cast<int>(modes.shape.size()))
   {
     for (const auto & mode : modes.density)
@@ -202,8 +205,8 @@ DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band, st
       for (const double * mode : m_Density)
       {
         out += plane;
-        *out += static_cast<float>(m_Options.scale *
-                                   std::inner_product(terms.basis, terms.basis + count, mode + first, 0.0));
+        *out +=
+          static_cast<float>(m_Options.scale * std::inner_product(terms.basis, terms.basis + count, mode + first, 0.0));
       }
     });
 }
@@ -244,19 +247,19 @@ DerivativeProjector::DrawBand(std::size_t bandId, float * image, float * derivat
     },
     [&](std::size_t t) { AddGeneral(t, band, plane); });
 
-  const std::size_t pixels = static_cast<std::size_t>(columns) * rays.Rows();
+  const std::size_t  pixels = static_cast<std::size_t>(columns) * rays.Rows();
+  std::vector<float> lengths(columns);
   for (int row = firstRow; row < endRow; ++row)
   {
     for (int column = 0; column < columns; ++column)
     {
-      const double  length = rays.StepLength(column, row);
-      const float * from = sums.data() + static_cast<std::ptrdiff_t>(row - firstRow) * stride + column;
-      const auto    pixel = static_cast<std::size_t>(row) * columns + column;
-      image[pixel] = static_cast<float>(*from * length);
-      for (std::size_t m = 1; m < planes; ++m)
-      {
-        derivatives[(m - 1) * pixels + pixel] = static_cast<float>(from[m * plane] * length);
-      }
+      lengths[column] = static_cast<float>(rays.StepLength(column, row));
+    }
+    for (std::size_t m = 0; m < planes; ++m)
+    {
+      const float * from = sums.data() + m * plane + static_cast<std::ptrdiff_t>(row - firstRow) * stride;
+      float *       to = (m == 0 ? image : derivatives + (m - 1) * pixels) + static_cast<std::size_t>(row) * columns;
+      std::transform(lengths.begin(), lengths.end(), from, to, std::multiplies<float>());
     }
   }
 }

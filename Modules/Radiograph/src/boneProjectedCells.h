@@ -71,10 +71,8 @@ public:
   void
   ForEachGroupOfBand(std::size_t band, const TGroup & drawGroup, const TGeneral & drawGeneral) const
   {
-    ForEachGroup(m_BinCells.begin() + m_BinStart[band],
-                 m_BinCells.begin() + m_BinStart[band + 1],
-                 drawGroup,
-                 drawGeneral);
+    ForEachGroup(
+      m_BinCells.begin() + m_BinStart[band], m_BinCells.begin() + m_BinStart[band + 1], drawGroup, drawGeneral);
   }
 
   /** Calls function(row, column, chord, mu) for each ray of the rows that passes cell t, in double precision. */

@@ -373,7 +373,8 @@ SetRowRuns(const Frame & frame, int firstRow, RowRuns & runs)
   low = low < frame.endColumn + none ? low : frame.endColumn + none;
   high = high > frame.firstColumn - 1 + none ? high : frame.firstColumn - 1 + none;
   const Columns down = __builtin_convertvector(low, Columns);
-  const Columns first = __builtin_convertvector(low > __builtin_convertvector(down, Rows) ? none + 1 : none, Columns) + down;
+  const Columns first =
+    __builtin_convertvector(low > __builtin_convertvector(down, Rows) ? none + 1 : none, Columns) + down;
   const Columns count = __builtin_convertvector(high + 1, Columns) - first;
   __builtin_memcpy(runs.first, &first, sizeof(first));
   __builtin_memcpy(runs.count, &count, sizeof(count));

@@ -41,13 +41,14 @@ struct Band
 };
 
 /** What is derived from a group's integrals I beside I itself. For a displacement of the cell's vertices j by w_j,
- * dI = sum over i = 1..3, j = 0..3 of (gradient of barycentric coordinate i) . w_j times a function K_ij of the pixel. */
+ * dI = sum over i = 1..3, j = 0..3 of (gradient of barycentric coordinate i) . w_j times a function K_ij of the pixel.
+ */
 struct Derivatives
 {
   int                    shapeModes;
   const double *         shape[groupSize]; ///< of each cell: modes x 3 x 4, gradient i . w_j
   int                    densityModes;
-  const double * const * density; ///< coefficients of each mode
+  const double * const * density;                ///< coefficients of each mode
   std::ptrdiff_t         coefficient[groupSize]; ///< where each cell's begin
   std::ptrdiff_t         plane;                  ///< floats in the band from one derivative to the next
   double *               scratch;                ///< DerivativeScratch() numbers

@@ -399,9 +399,8 @@ AddCells(CellGroup & group, const Band & band)
 {
   Complete(group);
   using Function = void (*)(CellGroup &, const Band &);
-  constexpr Function byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>,
-                                            AddOfDegree<3>, AddOfDegree<4>, AddOfDegree<5>,
-                                            AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
+  constexpr Function byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>, AddOfDegree<3>, AddOfDegree<4>,
+                                    AddOfDegree<5>, AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
   byDegree[group.degree](group, band);
 }
 } // namespace BONE_PROJECTION_NAMESPACE

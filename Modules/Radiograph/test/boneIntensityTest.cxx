@@ -20,7 +20,8 @@ Image::Pointer
 MakeImage(int columns, int rows, float value)
 {
   auto image = Image::New();
-  image->SetRegions(Image::RegionType({ { 3, -2, 0 } }, { { static_cast<unsigned int>(columns), static_cast<unsigned int>(rows), 1 } }));
+  image->SetRegions(Image::RegionType({ { 3, -2, 0 } },
+                                      { { static_cast<unsigned int>(columns), static_cast<unsigned int>(rows), 1 } }));
   image->Allocate();
   image->FillBuffer(value);
   return image;

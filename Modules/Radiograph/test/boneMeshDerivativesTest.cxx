@@ -60,9 +60,9 @@ Look(bool parallel, const Vector3 & source = Vector3(-60, -300, -40))
 
 /** In double precision, by clipping each ray with each tetrahedron. */
 std::vector<double>
-Reference(const std::vector<Vector3> & points,
-          const MeshArrays &           mesh,
-          const View &                 view,
+Reference(const std::vector<Vector3> &  points,
+          const MeshArrays &            mesh,
+          const View &                  view,
           const MeshRadiographOptions & options)
 {
   const auto          rays = RayFrame::Displaced(view);
@@ -89,12 +89,12 @@ Reference(const std::vector<Vector3> & points,
         if (first < last && mesh.region[t] >= options.minimumRegion)
         {
           const double length = (last - first) * direction.norm();
-          sum += options.offset * length +
-                 options.scale * BernsteinSegmentIntegral(mesh.degree[t],
-                                                          mesh.coefficients.data() + t * stride,
-                                                          start + first * step,
-                                                          start + last * step,
-                                                          length);
+          sum +=
+            options.offset * length + options.scale * BernsteinSegmentIntegral(mesh.degree[t],
+                                                                               mesh.coefficients.data() + t * stride,
+                                                                               start + first * step,
+                                                                               start + last * step,
+                                                                               length);
         }
       }
       image.push_back(sum);
@@ -283,8 +283,7 @@ TEST(MeshDerivatives, TheAdjointIsTheTranspose)
       std::generate(weights.begin(), weights.end(), [&]() { return static_cast<float>(value(random)); });
       std::vector<double>  coefficients(mesh.coefficients.size(), 7);
       std::vector<Vector3> positions(mesh.points.size());
-      BackprojectToMesh(
-        mesh.points, mesh, view, options, loops, weights.data(), coefficients.data(), positions.data());
+      BackprojectToMesh(mesh.points, mesh, view, options, loops, weights.data(), coefficients.data(), positions.data());
 
       const auto weigh = [&](const float * image, double & size) {
         double sum = size = 0;
@@ -332,14 +331,8 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
     }
   };
   Images other = images;
-  ProjectMeshDerivatives(mesh.points,
-                         mesh,
-                         view,
-                         {},
-                         modes,
-                         { backwards, backwards },
-                         other.image.data(),
-                         other.derivatives.data());
+  ProjectMeshDerivatives(
+    mesh.points, mesh, view, {}, modes, { backwards, backwards }, other.image.data(), other.derivatives.data());
   EXPECT_EQ(images.derivatives, other.derivatives);
 
   MeshRadiographOptions portable;

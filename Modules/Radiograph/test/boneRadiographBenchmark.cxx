@@ -146,17 +146,14 @@ BENCHMARK(Projection)
   ->Args({ 6000, 3 })
   ->Args({ 300000, 3 })
   ->Unit(benchmark::kMillisecond)
-  ->MeasureProcessCPUTime()->UseRealTime();
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
 BENCHMARK(Derivatives)
   ->Args({ 33000, 2 })
   ->Args({ 33000, 3 })
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime()
   ->UseRealTime();
-BENCHMARK(Backprojection)
-  ->Args({ 33000, 3 })
-  ->Unit(benchmark::kMillisecond)
-  ->MeasureProcessCPUTime()
-  ->UseRealTime();
+BENCHMARK(Backprojection)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(Voxels)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Walk)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->UseRealTime();
