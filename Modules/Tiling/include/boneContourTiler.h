@@ -19,6 +19,9 @@ struct TilingParameters
 {
   /** Cost of the knit's steps; span length where none is set. */
   std::shared_ptr<const TilingMetric> metric;
+  /** Runs body(0) to body(count - 1), in any order and at once if it likes; one after the other where none is set. The
+   * result does not depend on it. */
+  std::function<void(std::size_t count, const std::function<void(std::size_t)> & body)> parallel;
   /** Called with the share of the work done, 0..1. May throw to end the tiling. */
   std::function<void(double)> progress;
 };
@@ -32,11 +35,13 @@ struct TilingParameters
  * 3. Each pair is knitted from the inside out: the wall between the medial axes first, then ring after ring, the wall
  *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
  * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.
+ * 5. A slab that cannot be knitted so (pieces that no chain of rings describes, bends that turn tetrahedra over, walls
+ *    that would cross) is filled as a whole from the overlay of its slices' triangulations, which always can be done;
+ *    vertices between the slices are left where they cannot be removed.
  *
- * A slab that cannot be knitted so is tried with the other diagonals, other starts and other walls between the axes,
- * then with a plane in between whose contours are interpolated, then filled from one interior vertex; each is counted
- * in the report. Orientation is decided by exact predicates and the result is validated: the function returns a valid
- * mesh or throws std::runtime_error naming slice and contour.
+ * A hole that is bone above and below would be a void; it is closed and counted. Orientation is decided by exact
+ * predicates and the result is validated: the function returns a valid mesh or throws std::runtime_error naming the
+ * slice (pieces that belong together but lie beside each other).
  *
  * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
  * \ref MeshArrays. Deterministic. */

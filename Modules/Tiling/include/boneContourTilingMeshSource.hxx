@@ -7,6 +7,7 @@
 #include "boneContourTilingMeshSource.h"
 
 #include <itkLinearInterpolateImageFunction.h>
+#include <itkMultiThreaderBase.h>
 
 #include <limits>
 
@@ -148,6 +149,11 @@ ContourTilingMeshSource<TContourStack, TMesh>::GenerateData()
       aborted.SetDescription("The tiling was aborted.");
       throw aborted;
     }
+  };
+  parameters.parallel = [this](std::size_t count, const std::function<void(std::size_t)> & body) {
+    this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
+    this->GetMultiThreader()->ParallelizeArray(
+      0, count, [&body](itk::SizeValueType i) { body(i); }, nullptr);
   };
   this->GetInput()->Verify();
   MeshArrays mesh;

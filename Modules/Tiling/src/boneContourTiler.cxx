@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -100,10 +101,12 @@ public:
       {
         TileSlab(k - 1);
       }
-      Progress(0.9 * (k + 1) / slices);
+      Progress(0.5 * (k + 1) / slices);
     }
     CloseOutermost(0, false, m_Stack.GetOpenStart());
     CloseOutermost(slices - 1, true, m_Stack.GetOpenEnd());
+    RunFillings();
+    Progress(0.9);
     return Assemble();
   }
 
@@ -212,16 +215,10 @@ private:
       return;
     }
     m_Tetrahedra.resize(begin);
-    try
-    {
-      FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool, m_Tetrahedra);
-      ++m_Report.filledSlabs;
-    }
-    catch (const std::runtime_error & error)
-    {
-      throw std::runtime_error("slice " + std::to_string(k) + ": the space to the next slice cannot be filled, " +
-                               error.what() + "; use a smaller slice step");
-    }
+    m_Fillings.push_back([this, k, low, high] {
+      return FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool);
+    });
+    ++m_Report.filledSlabs;
   }
 
   bool
@@ -310,17 +307,68 @@ private:
   void
   FillEnd(const Section & section, double here, double height, bool above)
   {
-    const std::vector<Section> one{ section }, none;
-    const double               reach = FilledEndFactor * height;
-    if (above)
+    const double reach = FilledEndFactor * height;
+    m_Fillings.push_back([this, &section, here, reach, above] {
+      const std::vector<Section> one{ section }, none;
+      return above ? FillSlab(m_Stack, one, none, { { { 0 }, {} } }, here, here + reach, m_Pool)
+                   : FillSlab(m_Stack, none, one, { { {}, { 0 } } }, here - reach, here, m_Pool);
+    });
+    ++m_Report.filledEnds;
+  }
+
+  /** Fills what was put off; the spaces do not depend on each other. */
+  void
+  RunFillings()
+  {
+    std::vector<SlabFilling>        fillings(m_Fillings.size());
+    std::vector<std::exception_ptr> errors(m_Fillings.size());
+    const auto                      body = [&](std::size_t i) {
+      try
+      {
+        fillings[i] = m_Fillings[i]();
+      }
+      catch (...)
+      {
+        errors[i] = std::current_exception();
+      }
+    };
+    if (m_Parameters.parallel)
     {
-      FillSlab(m_Stack, one, none, { { { 0 }, {} } }, here, here + reach, m_Pool, m_Tetrahedra);
+      m_Parameters.parallel(m_Fillings.size(), body);
     }
     else
     {
-      FillSlab(m_Stack, none, one, { { {}, { 0 } } }, here - reach, here, m_Pool, m_Tetrahedra);
+      for (std::size_t i = 0; i < m_Fillings.size(); ++i)
+      {
+        body(i);
+      }
     }
-    ++m_Report.filledEnds;
+    for (std::size_t i = 0; i < fillings.size(); ++i)
+    {
+      if (errors[i])
+      {
+        std::rethrow_exception(errors[i]);
+      }
+      Append(fillings[i]);
+    }
+  }
+
+  void
+  Append(const SlabFilling & filling)
+  {
+    const int first = static_cast<int>(m_Pool.plane.size());
+    for (std::size_t i = 0; i < filling.points.size(); ++i)
+    {
+      m_Pool.Add(m_Stack.ToPlane(filling.points[i]), filling.points[i], filling.layers[i], filling.slice);
+    }
+    for (TiledTetra cell : filling.tetrahedra)
+    {
+      for (IdType & v : cell.vertices)
+      {
+        v = v < 0 ? first - 1 - v : v;
+      }
+      m_Tetrahedra.push_back(cell);
+    }
   }
 
   /** True where piece i of slice k has a counterpart above or below. */
@@ -427,17 +475,18 @@ private:
     return mesh;
   }
 
-  const ContourStack &                   m_Stack;
-  const TilingParameters &               m_Parameters;
-  ClosedHoles &                          m_Closed;
-  TilingReport &                         m_Report;
-  VertexPool                             m_Pool;
-  std::vector<TiledTetra>                m_Tetrahedra;
-  SlabTiler                              m_Slabs;
-  std::vector<std::vector<Section>>      m_Sections;
-  std::vector<std::vector<PieceOutline>> m_Pieces;
-  std::vector<PlanarTree>                m_Carried; ///< axes from below for the slice built last
-  std::vector<std::vector<Group>>        m_Groups;  ///< of slice k and k + 1
+  const ContourStack &                      m_Stack;
+  const TilingParameters &                  m_Parameters;
+  ClosedHoles &                             m_Closed;
+  TilingReport &                            m_Report;
+  VertexPool                                m_Pool;
+  std::vector<TiledTetra>                   m_Tetrahedra;
+  SlabTiler                                 m_Slabs;
+  std::vector<std::vector<Section>>         m_Sections;
+  std::vector<std::vector<PieceOutline>>    m_Pieces;
+  std::vector<PlanarTree>                   m_Carried;  ///< axes from below for the slice built last
+  std::vector<std::vector<Group>>           m_Groups;   ///< of slice k and k + 1
+  std::vector<std::function<SlabFilling()>> m_Fillings; ///< put off until all slices are there
 };
 } // namespace
 

@@ -201,7 +201,7 @@ MakeColumn(int lower, int upper, bool together, int steps, bool parted)
 class SlabFiller
 {
 public:
-  SlabFiller(const ContourStack & stack, const Side & lower, const Side & upper, int slice, VertexPool & pool)
+  SlabFiller(const ContourStack & stack, const Side & lower, const Side & upper, int slice, const VertexPool & pool)
     : m_Stack(stack)
     , m_Sides{ &lower, &upper }
     , m_Slice(slice)
@@ -209,19 +209,15 @@ public:
     , m_Overlay(OverlaySides(lower, upper))
   {}
 
-  void
-  Run(std::size_t               groups,
-      const std::vector<char> & connected,
-      double                    low,
-      double                    high,
-      std::vector<TiledTetra> & tetrahedra)
+  SlabFilling
+  Run(std::size_t groups, const std::vector<char> & connected, double low, double high)
   {
     CheckOverlaps(groups, connected);
     MakeColumns();
     MakePoints(low, high);
     FillPrisms();
     FillMiddle();
-    Append(CollapseSteinerPoints(m_Mesh, m_FirstSteiner), tetrahedra);
+    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner));
   }
 
 private:
@@ -400,20 +396,21 @@ private:
   }
 
   /** The bone among the cells; vertices in between get the layer that they bound. */
-  void
-  Append(const MeshArrays & filled, std::vector<TiledTetra> & tetrahedra)
+  SlabFilling
+  BoneOf(const MeshArrays & filled) const
   {
+    constexpr int Unseen = std::numeric_limits<int>::max();
+    SlabFilling   result;
+    result.slice = m_Slice;
     std::vector<int> least(filled.points.size(), std::numeric_limits<int>::max());
-    std::vector<int> most(filled.points.size(), 0);
     for (std::size_t t = 0; t < filled.tetrahedra.size(); ++t)
     {
       for (IdType v : filled.tetrahedra[t])
       {
         least[v] = std::min(least[v], filled.region[t]);
-        most[v] = std::max(most[v], filled.region[t]);
       }
     }
-    std::vector<int> id(filled.points.size(), -1);
+    std::vector<int> id(filled.points.size(), Unseen);
     for (std::size_t t = 0; t < filled.tetrahedra.size(); ++t)
     {
       if (filled.region[t] == 0)
@@ -425,7 +422,7 @@ private:
       for (int i = 0; i < 4; ++i)
       {
         const IdType v = filled.tetrahedra[t][i];
-        if (id[v] < 0)
+        if (id[v] == Unseen)
         {
           if (v < m_First[1])
           {
@@ -437,19 +434,22 @@ private:
           }
           else
           {
-            id[v] = m_Pool.Add(m_Stack.ToPlane(filled.points[v]), filled.points[v], least[v], m_Slice);
+            result.points.push_back(filled.points[v]);
+            result.layers.push_back(least[v]);
+            id[v] = -static_cast<int>(result.points.size());
           }
         }
         cell.vertices[i] = id[v];
       }
-      tetrahedra.push_back(cell);
+      result.tetrahedra.push_back(cell);
     }
+    return result;
   }
 
   const ContourStack & m_Stack;
   const Side *         m_Sides[2];
   int                  m_Slice;
-  VertexPool &         m_Pool;
+  const VertexPool &   m_Pool;
   PlanarOverlay        m_Overlay;
   std::vector<Column>  m_Columns;
   int                  m_Planes{ 1 };
@@ -459,15 +459,14 @@ private:
 };
 } // namespace
 
-void
+SlabFilling
 FillSlab(const ContourStack &         stack,
          const std::vector<Section> & lower,
          const std::vector<Section> & upper,
          const std::vector<Group> &   groups,
          double                       lowerHeight,
          double                       upperHeight,
-         VertexPool &                 pool,
-         std::vector<TiledTetra> &    tetrahedra)
+         const VertexPool &           pool)
 {
   std::vector<int>  lowerGroup(lower.size(), -1), upperGroup(upper.size(), -1);
   std::vector<char> connected;
@@ -483,10 +482,19 @@ FillSlab(const ContourStack &         stack,
     }
     connected.push_back(!group.lower.empty() && !group.upper.empty());
   }
-  const Bounds bounds = BoundsOf(pool, lower, upper);
-  const Side   below = MakeSide(pool, lower, lowerGroup, bounds), above = MakeSide(pool, upper, upperGroup, bounds);
-  SlabFiller   filler(stack, below, above, (lower.empty() ? upper : lower).front().slice, pool);
-  filler.Run(groups.size(), connected, lowerHeight, upperHeight, tetrahedra);
+  const int slice = (lower.empty() ? upper : lower).front().slice;
+  try
+  {
+    const Bounds bounds = BoundsOf(pool, lower, upper);
+    const Side   below = MakeSide(pool, lower, lowerGroup, bounds), above = MakeSide(pool, upper, upperGroup, bounds);
+    SlabFiller   filler(stack, below, above, slice, pool);
+    return filler.Run(groups.size(), connected, lowerHeight, upperHeight);
+  }
+  catch (const std::runtime_error & error)
+  {
+    throw std::runtime_error("slice " + std::to_string(slice) + ": the space next to it cannot be filled, " +
+                             error.what() + "; use a smaller slice step");
+  }
 }
 } // namespace tiling
 } // namespace bone

@@ -12,6 +12,15 @@ namespace bone
 {
 namespace tiling
 {
+/** What fills a slab: tetrahedra of vertices of the pool and of vertices of its own. */
+struct SlabFilling
+{
+  std::vector<Vector3>    points;     ///< its own vertices
+  std::vector<int>        layers;     ///< of its own vertices
+  std::vector<TiledTetra> tetrahedra; ///< own vertex i stands as -1 - i
+  int                     slice{ 0 };
+};
+
 /** \brief Fills the space between all sections of two slices, whatever branches, begins or ends there.
  *
  * 1. Each slice's triangulation is completed to one of a box by a constrained Delaunay triangulation of what is outside
@@ -25,18 +34,16 @@ namespace tiling
  *    for all regions, outside included, allow: terraces become slopes between the contours. As outside is filled with
  *    tetrahedra too, no surface can pass through another.
  *
- * Vertices that could not be collapsed stay. The tetrahedra of the bone are added to `tetrahedra`, their vertices to
- * `pool`. Throws std::runtime_error where a group of pieces with members on both slices would fall apart because they
- * do not overlap. */
-void
+ * Vertices that could not be collapsed stay. Throws std::runtime_error where a group of pieces with members on both
+ * slices would fall apart because they do not overlap. */
+SlabFilling
 FillSlab(const ContourStack &         stack,
          const std::vector<Section> & lower,
          const std::vector<Section> & upper,
          const std::vector<Group> &   groups,
          double                       lowerHeight,
          double                       upperHeight,
-         VertexPool &                 pool,
-         std::vector<TiledTetra> &    tetrahedra);
+         const VertexPool &           pool);
 } // namespace tiling
 } // namespace bone
 
