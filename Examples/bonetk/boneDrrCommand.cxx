@@ -9,6 +9,8 @@
 #include "boneMeshIO.h"
 #include "boneVoxelDRRImageFilter.h"
 
+#include <sstream>
+
 namespace bone
 {
 namespace
@@ -19,6 +21,8 @@ struct Options
   std::string geometry;
   std::string mask;
   bool        attenuation{ false };
+  bool        bilinear{ false };
+  bool        walk{ false };
   std::string output;
 };
 
@@ -37,7 +41,12 @@ MakeSource(const Options & options)
     }
     auto filter = DRRImageFilter<DensityMesh<double>, Radiograph>::New();
     filter->SetInput(ReadDensityMesh(options.input));
+    filter->SetMethod(options.walk ? DRRMethod::Walk : DRRMethod::Projection);
     return filter.GetPointer();
+  }
+  if (options.walk)
+  {
+    throw UsageError("--walk goes with a density mesh only");
   }
   auto filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
   filter->SetInput(ReadCT(options.input));
@@ -67,13 +76,22 @@ Run(const Options & options, Session & session)
 {
   const auto views = ReadGeometry(options.geometry);
   auto       source = MakeSource(options);
-  source->SetHUToAttenuation(options.attenuation ? HUToAttenuation::WaterScaled : HUToAttenuation::None);
+  source->SetHUToAttenuation(options.bilinear      ? HUToAttenuation::Bilinear
+                             : options.attenuation ? HUToAttenuation::WaterScaled
+                                                   : HUToAttenuation::None);
   session.Watch(source, "drr");
   for (std::size_t i = 0; i < views.size(); ++i)
   {
     source->SetGeometry(views[i]);
     source->Update();
     WriteImage(source->GetOutput(), ViewPath(options.output, i, views.size()));
+    if (options.walk)
+    {
+      const auto &       filter = dynamic_cast<const DRRImageFilter<DensityMesh<double>, Radiograph> &>(*source);
+      std::ostringstream text;
+      text << ViewPath(options.output, i, views.size()) << ": " << filter.GetMeanCellsPassed() << " tetrahedra a ray\n";
+      session.Print(text.str());
+    }
   }
 }
 } // namespace
@@ -88,6 +106,9 @@ AddDrrCommand(CLI::App & app, Action & action)
     ->required();
   command->add_option("--mask", options->mask, "Label map on the CT's grid: only voxels that are not 0 count");
   command->add_flag("--attenuation", options->attenuation, "Turn HU into attenuation of water at 60 keV first");
+  command->add_flag(
+    "--bilinear", options->bilinear, "Turn HU into attenuation, bone along a line of its own (CT only)");
+  command->add_flag("--walk", options->walk, "Walk each ray from cell to cell, slowly, and say how many it passes");
   command->add_option("-o,--output", options->output, "Radiograph to write (.mha, .nii.gz, .nrrd, ...)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }

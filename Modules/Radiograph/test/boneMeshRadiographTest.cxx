@@ -168,6 +168,86 @@ TEST(MeshRadiograph, ABallGivesTheChordsOfItsFacetsCloseToThoseOfTheSphere)
   }
 }
 
+TEST(MeshRadiograph, ABallConvergesToTheSphereWithTheSquareOfTheCellsSize)
+{
+  const Vector3 centre(1, 2, 3);
+  View          view = XRayGeometry::Framing(Vector3(centre - Vector3::Constant(13)),
+                                    Vector3(centre + Vector3::Constant(13)),
+                                    Vector3(0.3, 1, 0.2).normalized(),
+                                    Vector3::UnitZ(),
+                                    500,
+                                    800,
+                                    48);
+  const auto    geometry = XRayGeometry::New();
+  geometry->SetView(view);
+  double error[2] = { 0, 0 };
+  for (int fine = 0; fine < 2; ++fine)
+  {
+    auto mesh = test::BallMesh(fine == 0 ? 8 : 16, centre, 12);
+    test::SetConstant(mesh, 1);
+    const auto image = Project(mesh, view);
+    for (int i = 0; i < static_cast<int>(image.size()); ++i)
+    {
+      const Vector3 ray = (geometry->GetPixelPoint(i % view.size[0], i / view.size[0]) - view.source).normalized();
+      const double  distance = ray.cross(Vector3(centre - view.source)).norm();
+      error[fine] += distance < 10 ? 2 * std::sqrt(144 - distance * distance) - image[i] : 0;
+    }
+  }
+  EXPECT_NEAR(error[0] / error[1], 4, 0.5);
+}
+
+TEST(MeshRadiograph, ABallGivesTheChordsOfItsBoundaryTriangles)
+{
+  auto mesh = test::BallMesh(8, Vector3(1, 2, 3), 12);
+  test::SetConstant(mesh, 1);
+  View view = Oblique(false, 40);
+  // Signed distances from the source at which a ray meets the surface add up to the chord.
+  std::vector<float> expected(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+  const RayFrame     rays = RayFrame::Displaced(view);
+  const auto         faces = BoundaryFaces(mesh);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    const Vector3 direction =
+      rays.Direction(static_cast<double>(i % view.size[0]), static_cast<double>(i / view.size[0]));
+    double sum = 0;
+    for (const auto & face : faces)
+    {
+      const Vector3 a = mesh.points[face[0]] - view.source, b = mesh.points[face[1]] - view.source;
+      const Vector3 c = mesh.points[face[2]] - view.source;
+      const double  u = direction.dot(b.cross(c)), v = direction.dot(c.cross(a)), w = direction.dot(a.cross(b));
+      if ((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))
+      {
+        sum += (u > 0 ? 1 : -1) * a.dot(b.cross(c)) / (u + v + w);
+      }
+    }
+    expected[i] = static_cast<float>(sum * direction.norm());
+  }
+  EXPECT_LT(Difference(Project(mesh, view), expected), 2e-6);
+  EXPECT_LT(Difference(Walk(mesh, view), expected), 2e-6);
+}
+
+TEST(MeshRadiograph, SeveralViewsInOneCallAreThoseOfEach)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, 3, 8);
+  const std::vector<View>         views = { Oblique(false), Oblique(true, 50), Oblique(false, 33) };
+  std::vector<std::vector<float>> images;
+  std::vector<float *>            pointers;
+  for (const View & view : views)
+  {
+    images.emplace_back(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+  }
+  for (auto & image : images)
+  {
+    pointers.push_back(image.data());
+  }
+  ProjectMesh(mesh.points, mesh, views, {}, Sequential(true), pointers);
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    EXPECT_EQ(images[i], Project(mesh, views[i]));
+  }
+}
+
 TEST(MeshRadiograph, PolynomialsOfAnyDegreeMatchTheirClosedForm)
 {
   const std::vector<test::Affine> functions = { { 0.8, Vector3(0.02, -0.01, 0.015) },

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""The paper's Table 4 and the comparison of speed, on one bone of a CT.
+
+Builds the model (or takes one built before: MODEL=folder), makes the radiograph of each level, of the CT masked by the
+label, and of the same CT by plastimatch where that is installed, and writes Documentation/validation/radiographs.md.
+Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_BENCHMARKS (boneRadiographBenchmarks; without it
+there is no table of speed). Arguments: bone's name in the table, CT, label map (below BONETK_DATA), label.
+
+    BONETK=build/test/Examples/bonetk/bonetk Testing/Validation/radiographs.py "hip bone" hip_ct/hip_ct.nii.gz \
+        hip_ct/hip_labels.nii.gz 2
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import nibabel
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TARGETS = (1.5, 3.0, 5.0)
+PAPER = (3.2, 7.6, 14.4)
+BENCHMARKS = "Projection/(33000|300000)|Derivatives|Backprojection|Voxels|Walk"
+
+
+def run(*command):
+    return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
+
+
+def read_mha(path):
+    """Values of a MetaImage of floats with its header inside."""
+    raw = path.read_bytes()
+    end = raw.index(b"ElementDataFile = LOCAL") + len("ElementDataFile = LOCAL\n")
+    header = dict(line.split(" = ", 1) for line in raw[:end].decode().splitlines())
+    if header["CompressedData"] == "True":
+        import zlib
+        data = zlib.decompress(raw[end:])
+    else:
+        data = raw[end:]
+    columns, rows, _ = map(int, header["DimSize"].split())
+    kind = {"MET_FLOAT": "<f4", "MET_SHORT": "<i2", "MET_DOUBLE": "<f8"}[header["ElementType"]]
+    return numpy.frombuffer(data, kind).reshape(rows, columns).astype(float)
+
+
+def frame(labels_path, label):
+    """A view from the front of 512 x 512 pixels that just holds the labelled voxels, as bonetk's JSON and plastimatch's
+    arguments. Patients lie along z; source 1000 mm before the bone's centre, detector 1200 mm from the source."""
+    image = nibabel.load(labels_path)
+    voxels = numpy.argwhere(numpy.asarray(image.dataobj) == label)
+    corners = numpy.array([[(voxels.min(0), voxels.max(0))[(k >> a) & 1][a] for a in range(3)] for k in range(8)])
+    points = nibabel.affines.apply_affine(image.affine, corners) * (-1, -1, 1)  # RAS to LPS
+    low, high = points.min(0), points.max(0)
+    centre = (low + high) / 2
+    sad, sid = 1000.0, 1200.0
+    nearest = sad - (high[1] - low[1]) / 2
+    side = max(high[0] - low[0], high[2] - low[2]) * sid / nearest * 1.02
+    pixel = side / 512
+    source = centre - (0, sad, 0)
+    origin = centre + (-255.5 * pixel, sid - sad, 255.5 * pixel)
+    geometry = {"source": source.tolist(), "detectorOrigin": origin.tolist(), "detectorU": [1, 0, 0],
+                "detectorV": [0, 0, -1], "size": [512, 512], "spacing": [pixel, pixel]}
+    plastimatch = ["--nrm", "0 -1 0", "--vup", "0 0 1", "--sad", sad, "--sid", sid, "-r", "512 512",
+                   "-z", f"{side} {side}", "-o", " ".join(map(str, centre))]
+    return geometry, plastimatch
+
+
+def table_4(bonetk, model, work, ct, labels, label, geometry):
+    json_path = work / "view.json"
+    json_path.write_text(json.dumps(geometry))
+    mask = work / "mask.nii.gz"
+    image = nibabel.load(labels)
+    kept = (numpy.asarray(image.dataobj) == label).astype(numpy.uint8)
+    nibabel.save(nibabel.Nifti1Image(kept, image.affine, image.header), mask)
+    run(bonetk, "drr", ct, "--mask", mask, "--geometry", json_path, "-o", work / "ct.mha")
+    truth = read_mha(work / "ct.mha")
+    rows = []
+    for level in (1, 2, 3):
+        path = model / f"model_L{level}.vtu"
+        out = work / f"level{level}.mha"
+        run(bonetk, "drr", path, "--geometry", json_path, "-o", out)
+        drr = read_mha(out)
+        either = (truth != 0) | (drr != 0)
+        difference = 100 * numpy.abs(drr - truth)[either] / (truth.max() - truth.min())
+        cells = int(re.search(r"(\d+) tetrahedra", run(bonetk, "info", path)).group(1))
+        walk = run(bonetk, "drr", path, "--geometry", json_path, "--walk", "-o", work / "walk.mha")
+        passed = float(re.search(r"([\d.]+) tetrahedra a ray", walk).group(1))
+        rows.append((level, cells, passed, difference.mean(), difference.std()))
+    return rows, truth
+
+
+def time_plastimatch(work, ct, arguments):
+    """Seconds of `plastimatch drr` exact by its own clock, which leaves reading the CT out; None without it."""
+    if shutil.which("plastimatch") is None:
+        return None
+    run("plastimatch", "convert", "--input", ct, "--output-img", work / "ct_in.mha")
+    best = None
+    for _ in range(3):
+        text = run("plastimatch", "drr", "-i", "exact", "-t", "raw", *arguments, "-O", work / "p", work / "ct_in.mha")
+        seconds = re.findall(r"(?:Total|Processing|Compute)[^\n]*time:?\s*([\d.]+)", text)
+        if seconds:
+            best = min(float(seconds[-1]), best or 1e9)
+    return best
+
+
+def speed(program):
+    text = run(program, f"--benchmark_filter={BENCHMARKS}", "--benchmark_format=json", "--benchmark_repetitions=5")
+    best = {}
+    for entry in json.loads(text)["benchmarks"]:
+        if entry["run_type"] != "iteration":
+            continue
+        name = "/".join(part for part in entry["name"].split("/") if not part.endswith("_time"))
+        wall, cpu, intervals = best.get(name, (1e9, 1e9, 0))
+        best[name] = (min(wall, entry["real_time"]), min(cpu, entry["cpu_time"]), entry.get("intervals", intervals))
+    return best
+
+
+def main():
+    bonetk, data = os.environ["BONETK"], pathlib.Path(os.environ["BONETK_DATA"])
+    name, ct, labels, label = sys.argv[1], data / sys.argv[2], data / sys.argv[3], int(sys.argv[4])
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        model = pathlib.Path(os.environ.get("MODEL", work / "model"))
+        if not model.exists():
+            run(bonetk, "build", ct, "--labels", labels, "--label", label, "-o", model, "--degree", 3)
+        geometry, arguments = frame(labels, label)
+        rows, truth = table_4(bonetk, model, work, ct, labels, label, geometry)
+        lines = ["# Radiographs", "",
+                 "Made by `Testing/Validation/radiographs.py`.", "",
+                 f"## The paper's Table 4: {name}, label {label} of `{sys.argv[2]}`", "",
+                 "512 x 512 pixels from the front, source 1000 mm before the bone's centre, detector at 1200 mm, degree 3, "
+                 "against the radiograph of the CT masked by the label (Joseph's method), over the pixels that either "
+                 f"hits; {100 * (truth != 0).mean():.0f} % of the image. In % of the CT radiograph's range.", "",
+                 "| level | tetrahedra | passed by a ray | mean difference (%) | standard deviation (%) | bar | paper |",
+                 "|---|---|---|---|---|---|---|"]
+        for (level, cells, passed, mean, deviation), target, paper in zip(rows, TARGETS, PAPER):
+            lines.append(f"| {level} | {cells} | {passed:.1f} | {mean:.2f} | {deviation:.2f} | {target} | {paper} |")
+        seconds = time_plastimatch(work, ct, arguments)
+        lines += ["", "## Speed", ""]
+        lines.append("`plastimatch drr` exact on the same CT and view, without reading: "
+                     + (f"{1000 * seconds:.0f} ms." if seconds else "not measured."))
+        if "BONETK_BENCHMARKS" in os.environ:
+            lines += ["", f"`boneRadiographBenchmarks`, 2 threads on {os.cpu_count()} processors, load "
+                      f"{os.getloadavg()[0]:.1f} at the start; least of 5. Arguments: cells, degree. The block fills the "
+                      "image.", "", "| benchmark | wall (ms) | processor (ms) | ns a ray-cell interval: wall | "
+                      "half the processor time |", "|---|---|---|---|---|"]
+            for key, (wall, cpu, count) in speed(os.environ["BONETK_BENCHMARKS"]).items():
+                each = f"{1e6 * wall / count:.2f} | {0.5e6 * cpu / count:.2f}" if count else "| "
+                lines.append(f"| {key} | {wall:.1f} | {cpu:.1f} | {each} |")
+        (ROOT / "Documentation/validation/radiographs.md").write_text("\n".join(lines) + "\n")
+
+
+main()
