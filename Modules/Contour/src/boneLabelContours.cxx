@@ -64,6 +64,24 @@ ContourAlone(const PlaneField & field, double level, const Polygon & seed, const
   return {};
 }
 
+// Adds the contours of level 0 that vanished at the level of the right area.
+void
+BringBackVanished(const std::vector<Polygon> & atZero, std::vector<Polygon> & contours)
+{
+  const std::size_t count = contours.size();
+  for (const Polygon & lost : atZero)
+  {
+    const bool vanished = std::none_of(
+      contours.begin(), contours.begin() + static_cast<std::ptrdiff_t>(count), [&lost](const Polygon & contour) {
+        return (SignedArea(contour) < 0.0) == (SignedArea(lost) < 0.0) && PolygonsOverlap(lost, contour);
+      });
+    if (vanished)
+    {
+      contours.push_back(lost);
+    }
+  }
+}
+
 // Removes contours whose label's area is below `minimumArea`; returns how many. A voxel or two alone, or a hole of that
 // size, is smoothed to a fraction of its area and gets a level of its own.
 int
@@ -78,12 +96,12 @@ SettleSmall(const LabelPlane & plane, double level, double minimumArea, std::vec
       continue;
     }
     const bool hole = SignedArea(contours[c]) < 0.0;
-    double     tight = level;
-    double     wide = level;
+    double     tight = hole ? std::max(level, 0.0) : std::min(level, 0.0);
+    double     wide = tight;
     Polygon    best;
     for (double factor = 2.0; factor > 0.3 && best.empty(); factor *= 0.7)
     {
-      wide = level + (hole ? factor : -factor) * LevelRange * plane.field.grid.spacing.minCoeff();
+      wide = tight + (hole ? factor : -factor) * LevelRange * plane.field.grid.spacing.minCoeff();
       best = ContourAlone(plane.field, wide, before[c], before);
     }
     const double wanted = best.empty() ? 0.0 : plane.AreaAbout(best, hole);
@@ -129,6 +147,7 @@ ContoursOfLabel(const LabelField & label,
   }
   const PlaneField     field = label.SamplePlane(grid, u, v, height);
   std::vector<Polygon> contours = ExtractLevelContours(field, 0.0);
+  const auto           atZero = contours;
   double               low = -LevelRange * grid.spacing.minCoeff(); // encloses too much
   double               high = -low;                                 // encloses too little
   double               level = 0.0;
@@ -140,6 +159,7 @@ ContoursOfLabel(const LabelField & label,
     contours = ExtractLevelContours(field, level);
     area = TotalArea(contours);
   }
+  BringBackVanished(atZero, contours);
   dropped += SettleSmall({ label, field, u, v, height }, level, minimumArea, contours);
   return GroupPieces(std::move(contours), 0.0, dropped);
 }

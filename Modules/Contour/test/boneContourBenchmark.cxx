@@ -112,5 +112,87 @@ MedialAxis(benchmark::State & state)
   state.SetItemsProcessed(state.iterations() * 48);
 }
 BENCHMARK(MedialAxis)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// A femur's shaft in a CT of 512 x 512 pixels of 0.7 mm, slices 1 mm apart.
+struct WholeCT
+{
+  TestCT::Pointer       ct;
+  TestLabels::Pointer   labels;
+  ContourStack::Pointer start;
+
+  explicit WholeCT(unsigned int slices)
+  {
+    TestGrid grid;
+    grid.size = { { 512, 512, 1 } };
+    grid.spacing = { 0.7, 0.7, 1.0 };
+    grid.origin = { -179, -179, 0 };
+    const auto shaft = [](double x, double y) { return std::hypot(x - 60.0, 1.2 * y); };
+    const auto section = MakeImage<TestCT>(
+      grid, [&](double x, double y, double) { return TubeDensity(shaft(x, y), 0.0, 18.0, 12.0, 20.0); });
+    const auto inside =
+      MakeImage<TestLabels>(grid, [&](double x, double y, double) { return shaft(x, y) < 18.0 ? 1 : 0; });
+    ct = Repeat<TestCT>(section, slices);
+    labels = Repeat<TestLabels>(inside, slices);
+    start = ContourStack::New();
+    Contour contour;
+    for (const Vector2 & q : Ellipse(19.0, 16.0, 80, { 60.0, 0.0 }))
+    {
+      contour.points.push_back({ q.x(), q.y(), 0.0 });
+    }
+    ContourSlice slice;
+    slice.contours = { contour };
+    start->SetSlices({ slice });
+  }
+
+  // The section on every slice, two pixels along x every eight slices.
+  template <typename TImage>
+  static typename TImage::Pointer
+  Repeat(const TImage * section, unsigned int slices)
+  {
+    auto                        image = TImage::New();
+    typename TImage::RegionType region = section->GetBufferedRegion();
+    const std::size_t           count = region.GetNumberOfPixels();
+    region.SetSize(2, slices);
+    image->CopyInformation(section);
+    image->SetRegions(region);
+    image->Allocate();
+    for (unsigned int k = 0; k < slices; ++k)
+    {
+      const std::size_t shift = 2 * (k / 8);
+      std::copy_n(section->GetBufferPointer(), count - shift, image->GetBufferPointer() + k * count + shift);
+      std::fill_n(image->GetBufferPointer() + k * count, shift, section->GetBufferPointer()[0]);
+    }
+    return image;
+  }
+};
+
+// range(0): slices; range(1): 0 label as given, 1 refined, 2 from one contour. To medial axes.
+void
+WholeJob(benchmark::State & state)
+{
+  const WholeCT whole(static_cast<unsigned int>(state.range(0)));
+  for ([[maybe_unused]] auto step : state)
+  {
+    auto snake = Filter::New();
+    snake->SetInput(whole.ct);
+    if (state.range(1) == 2)
+    {
+      snake->SetInitialContours(whole.start);
+    }
+    else
+    {
+      snake->SetLabelImage(whole.labels);
+      snake->SetRefineLabelOutline(state.range(1) == 1);
+    }
+    auto resample = ContourResampleFilter<>::New();
+    resample->SetInput(snake->GetOutput());
+    auto axes = MedialAxisFilter<>::New();
+    axes->SetInput(resample->GetOutput());
+    axes->Update();
+    benchmark::DoNotOptimize(axes->GetOutput());
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(WholeJob)->ArgsProduct({ { 125, 250 }, { 0, 1, 2 } })->Unit(benchmark::kMillisecond)->UseRealTime();
 } // namespace
 } // namespace bone
