@@ -153,7 +153,7 @@ AddContoursCommand(CLI::App & app, Action & action)
                  options->layerDistance,
                  "Least distance between a contour and the next inside it in mm; default 0.8 or a pixel")
     ->check(Positive());
-  command->add_flag("--refine", options->refine, "Move the label's outline to the edges of the CT, by a pixel at most");
+  command->add_flag("--refine", options->refine, "Move the label's outline to the edges of the CT, by half a pixel at most");
   command->add_flag(
     "--keep-small", options->keepSmall, "Keep pieces and holes of a single slice, and bodies of little volume");
   command

@@ -86,7 +86,7 @@ public:
   itkSetMacro(RefineLabelOutline, bool);
   itkGetConstMacro(RefineLabelOutline, bool);
   itkBooleanMacro(RefineLabelOutline);
-  /** Bound on that motion, mm; 0 (default): one pixel. */
+  /** Bound on that motion, mm; 0 (default): half a pixel, as far as a label is off at its best. */
   itkSetMacro(RefineDistance, double);
   itkGetConstMacro(RefineDistance, double);
 

@@ -267,7 +267,7 @@ SnakeContourFilter<TInputImage, TContourStack>::MakeParameters(const Frame & fra
   parameters.keepSmallPieces = m_KeepSmallPieces;
   parameters.boneThreshold = m_BoneThreshold;
   parameters.followStep = frame.slices.step;
-  parameters.refineDistance = m_RefineDistance > 0.0 ? m_RefineDistance : pixel;
+  parameters.refineDistance = m_RefineDistance > 0.0 ? m_RefineDistance : 0.5 * pixel;
   parameters.layers.numberOfLayers = m_NumberOfLayers;
   parameters.layers.minimumDistance = m_MinimumLayerDistance > 0.0 ? m_MinimumLayerDistance : std::max(0.8, pixel);
   parameters.layers.endostealThreshold = m_EndostealThreshold;

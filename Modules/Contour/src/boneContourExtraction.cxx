@@ -288,18 +288,20 @@ RefineSections(std::vector<BoneSection> &   sections,
     const PlaneField           plane = PlaneAround(start, section.height, 8.0 * pixel.maxCoeff(), planes);
     const BoneEdges            edges(plane, {}, Smoothing(parameters, pixel), parameters.minimumSlope);
     BoneSection                refined = section;
+    // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does. What
+    // finds few edges, or is so small that it shrinks, stays as it is.
+    const auto refine = [&](Polygon & loop) {
+      SnakeResult result = RefineSnake(loop, edges, parameters.refineDistance, parameters.snake);
+      AddResult(result, line);
+      if (result.support >= 0.5 && SignedArea(result.contour) / SignedArea(loop) > 0.75)
+      {
+        loop = std::move(result.contour);
+      }
+    };
     for (BonePiece & piece : refined.pieces)
     {
-      // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does.
-      SnakeResult result = RefineSnake(piece.outer, edges, parameters.refineDistance, parameters.snake);
-      AddResult(result, line);
-      piece.outer = std::move(result.contour);
-      for (Polygon & hole : piece.holes)
-      {
-        result = RefineSnake(hole, edges, parameters.refineDistance, parameters.snake);
-        AddResult(result, line);
-        hole = std::move(result.contour);
-      }
+      refine(piece.outer);
+      std::for_each(piece.holes.begin(), piece.holes.end(), refine);
     }
     if (AnyCrossing(LoopsOf(refined)))
     {

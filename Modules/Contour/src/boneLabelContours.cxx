@@ -104,8 +104,13 @@ SettleSmall(const LabelPlane & plane, double level, double minimumArea, std::vec
       wide = tight + (hole ? factor : -factor) * LevelRange * plane.field.grid.spacing.minCoeff();
       best = ContourAlone(plane.field, wide, before[c], before);
     }
-    const double wanted = best.empty() ? 0.0 : plane.AreaAbout(best, hole);
-    if (best.empty() || wanted < minimumArea)
+    if (best.empty()) // it would merge with another at once
+    {
+      wide = tight;
+      best = before[c];
+    }
+    const double wanted = plane.AreaAbout(best, hole);
+    if (wanted < minimumArea)
     {
       contours[c].clear();
       ++dropped;
