@@ -351,20 +351,25 @@ private:
   std::map<std::pair<int, int>, std::vector<const SurfaceSample *>> m_Buckets;
 };
 
+// Between the values whose weights' middles lie about half of all weight: it does not jump where rounding decides.
 double
 WeightedMedian(std::vector<std::pair<double, double>> & values)
 {
   std::sort(values.begin(), values.end());
-  const double total =
-    std::accumulate(values.begin(), values.end(), 0.0, [](double sum, const auto & v) { return sum + v.second; });
+  const double half =
+    0.5 * std::accumulate(values.begin(), values.end(), 0.0, [](double sum, const auto & v) { return sum + v.second; });
   double passed = 0.0;
-  for (const auto & value : values)
+  double before = 0.0; // where the last value's middle was
+  for (std::size_t i = 0; i < values.size(); ++i)
   {
-    passed += value.second;
-    if (passed >= 0.5 * total)
+    const double middle = passed + 0.5 * values[i].second;
+    if (middle >= half)
     {
-      return value.first;
+      const double t = i > 0 ? (half - before) / (middle - before) : 0.0;
+      return i > 0 ? (1.0 - t) * values[i - 1].first + t * values[i].first : values[i].first;
     }
+    before = middle;
+    passed += values[i].second;
   }
   return values.back().first;
 }

@@ -66,7 +66,10 @@ public:
       return edges;
     }
     const auto begin = m_Values.begin() + m_Profile.lead;
-    m_Peak = static_cast<int>(std::max_element(begin, begin + window) - m_Values.begin());
+    // The first sample that is as good as the highest: on a plateau rounding would choose.
+    const double highest = *std::max_element(begin, begin + window) - 0.5;
+    m_Peak = static_cast<int>(
+      std::find_if(begin, begin + window, [highest](double value) { return value >= highest; }) - m_Values.begin());
     double threshold = m_Rules.endostealThreshold;
     if (!(threshold > 0.0))
     {

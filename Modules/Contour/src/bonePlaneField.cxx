@@ -187,7 +187,8 @@ private:
       return;
     }
     const double squared = SquaredDistance(m_Segments[static_cast<std::size_t>(s)], m_Grid.Node(i, j), along);
-    if (squared < m_Squared[at])
+    // Of segments that meet in the nearest point the first stays, whatever rounding says.
+    if (squared < (1.0 - 1e-9) * m_Squared[at] - 1e-14)
     {
       m_Squared[at] = squared;
       m_Nearest[at] = s;
@@ -200,8 +201,10 @@ private:
   {
     const Segment & segment = m_Segments[static_cast<std::size_t>(s)];
     const Vector2   b = segment.a + segment.d;
-    const Vector2   low = (segment.a.cwiseMin(b) - m_Grid.origin).cwiseQuotient(m_Grid.spacing);
-    const Vector2   high = (segment.a.cwiseMax(b) - m_Grid.origin).cwiseQuotient(m_Grid.spacing);
+    // Points of level contours lie on the grid's lines: with a little slack they belong to the cells on both sides.
+    const Vector2 slack = Vector2::Constant(1e-6);
+    const Vector2 low = (segment.a.cwiseMin(b) - m_Grid.origin).cwiseQuotient(m_Grid.spacing) - slack;
+    const Vector2 high = (segment.a.cwiseMax(b) - m_Grid.origin).cwiseQuotient(m_Grid.spacing) + slack;
     for (int j = std::max(0, static_cast<int>(std::floor(low.y())));
          j <= std::min(m_Grid.size[1] - 1, static_cast<int>(std::ceil(high.y())));
          ++j)
@@ -355,8 +358,9 @@ CoveringGrid(const std::vector<Polygon> & polygons, double margin, const Vector2
   }
   for (int a = 0; a < 2; ++a)
   {
-    const double first = std::floor((low[a] - margin - anchor[a]) / spacing[a]);
-    const double last = std::ceil((high[a] + margin - anchor[a]) / spacing[a]);
+    // What falls on a node goes outward, whatever rounding says: polygons often begin at the anchor.
+    const double first = std::floor((low[a] - margin - anchor[a]) / spacing[a] - 1e-6);
+    const double last = std::ceil((high[a] + margin - anchor[a]) / spacing[a] + 1e-6);
     grid.origin[a] = anchor[a] + first * spacing[a];
     grid.size[static_cast<std::size_t>(a)] = static_cast<int>(last - first) + 1;
   }
