@@ -4,6 +4,7 @@
 #include "boneCorticalProfile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace bone
@@ -207,13 +208,28 @@ ThicknessOfBlurredLayer(double width, double blur)
   {
     return width;
   }
-  double low = 1.0;
-  double high = DistinctWidth;
-  for (int i = 0; i < 30; ++i)
+  // Widths rise with the thickness: the place among them, in between linear.
+  constexpr int     count = 161;
+  constexpr double  step = (DistinctWidth - 1.0) / (count - 1);
+  static const auto widths = [] {
+    std::array<double, count> table;
+    for (int k = 0; k < count; ++k)
+    {
+      table[static_cast<std::size_t>(k)] = BlurredWidth(1.0 + k * step);
+    }
+    return table;
+  }();
+  const double relative = width / blur;
+  const auto   above = std::upper_bound(widths.begin(), widths.end(), relative);
+  if (above == widths.begin())
   {
-    const double thickness = 0.5 * (low + high);
-    (BlurredWidth(thickness) < width / blur ? low : high) = thickness;
+    return blur;
   }
-  return 0.5 * (low + high) * blur;
+  if (above == widths.end())
+  {
+    return width;
+  }
+  const double between = (relative - *(above - 1)) / (*above - *(above - 1));
+  return (1.0 + (static_cast<double>(above - widths.begin()) - 1.0 + between) * step) * blur;
 }
 } // namespace bone
