@@ -30,6 +30,7 @@ struct Options
   double      tetrahedra{ 0.0 };
   int         axis{ 2 };
   int         layers{ 3 };
+  bool        follow{ false };
   bool        refine{ false };
   bool        keepSmall{ false };
 
@@ -84,6 +85,7 @@ Run(const Options & options, Session & session)
   snake->SetAxis(static_cast<unsigned int>(options.axis));
   snake->SetSliceStep(options.sliceStep);
   snake->SetNumberOfLayers(options.layers);
+  snake->SetFollowLabel(options.follow);
   snake->SetMinimumLayerDistance(distance);
   snake->SetRefineLabelOutline(options.refine);
   snake->SetKeepSmallPieces(options.keepSmall);

@@ -52,8 +52,8 @@ def phantoms(program, out):
                "0.8 mm along both axes. Errors are distances (mm) of the contours' points to the true surface; endosteal "
                "ones where the cortex is at least two voxels (1.2 mm) thick. Missed: share of the true outline further "
                "than 1 mm from the contours on its slice. Means of the ten subjects, the worst in brackets.\n")
-    out.append("| bone | noise, HU | periosteal | bias | endosteal | bias | missed, % | time, s |")
-    out.append("|---|---|---|---|---|---|---|---|")
+    out.append("| bone | noise, HU | periosteal | bias | endosteal | bias | missed, % |")
+    out.append("|---|---|---|---|---|---|---|")
     worst = {"periosteal": 0.0, "endosteal": 0.0}
     for bone, start in STARTS.items():
         for noise in NOISES:
@@ -66,7 +66,7 @@ def phantoms(program, out):
             for key in worst:
                 worst[key] = max(worst[key], max(run[key] for run in runs))
             out.append(f"| {bone} | {noise} | {cell('periosteal')} | {cell('periosteal_signed')} | {cell('endosteal')} | "
-                       f"{cell('endosteal_signed')} | {cell('missed', 100, 1)} | {cell('seconds', 1, 1)} |")
+                       f"{cell('endosteal_signed')} | {cell('missed', 100, 1)} |")
             print(out[-1], flush=True)
     out.append(f"\nWanted: periosteal ≤ 0.25 mm, endosteal ≤ 0.35 mm. Worst single subject: {worst['periosteal']:.3f} and "
                f"{worst['endosteal']:.3f} mm.\n")
@@ -119,7 +119,6 @@ def real_femur(program, data, out):
     rest = [s for s in bad if not s["events"]]
     if rest:
         out.append("\nNot named: " + ", ".join(f"{s['height'] - low:.0f} mm ({s['mean']:.2f})" for s in rest) + ".")
-    out.append(f"\nFollowing took {followed['seconds']:.1f} s.\n")
 
 
 def main():

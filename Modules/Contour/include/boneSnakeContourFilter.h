@@ -20,9 +20,10 @@ namespace bone
  *   angles;
  * - "LabelImage", optional, on its own grid: the periosteal contours start from the outline of `Label`, smooth and with
  *   the label's area, and are kept so or, with RefineLabelOutline, moved to the CT's edges within RefineDistance;
- * - "InitialContours", optional: closed contours of layer 0 on some slice (parallel to the image's slices). Without a
- *   label they are settled on the CT and followed from slice to slice, both ways, until they vanish; with a label they
- *   replace its outline on their slices.
+ * - "InitialContours", optional: closed contours of layer 0 on some slices (parallel to the image's). Without a label
+ *   the bone is followed from them to all other slices (\ref BoneFollower): its contours may split, join, appear and
+ *   end, and bones in contact are parted along the dark line between them. With a label they replace its outline on
+ *   their slices; with FollowLabel too the bone is followed from both.
  *
  * At least one of the optional inputs must be there. The output is a \ref ContourStack with layers 0 (periosteal, holes
  * have region Outside), 1 (endosteal) and 2 (medullary). A periosteal contour without holes has at most one endosteal
@@ -89,6 +90,11 @@ public:
   /** Bound on that motion, mm; 0 (default): half a pixel, as far as a label is off at its best. */
   itkSetMacro(RefineDistance, double);
   itkGetConstMacro(RefineDistance, double);
+  /** Whether the bone is followed from the slices that the label marks to the others (a label painted on a few slices):
+   * these are then settled on the CT as initial contours are. Default off: the bone ends where its label does. */
+  itkSetMacro(FollowLabel, bool);
+  itkGetConstMacro(FollowLabel, bool);
+  itkBooleanMacro(FollowLabel);
 
   /** Snake: weight of |x'|^2 (mm^2, default 0.02), of |x''|^2 (mm^4, default 0.3) and of the image's force (default 1).
    */
@@ -213,6 +219,7 @@ private:
   double           m_SliceStep{ 0.0 };
   int              m_Label{ 0 };
   bool             m_RefineLabelOutline{ false };
+  bool             m_FollowLabel{ false };
   double           m_RefineDistance{ 0.0 };
   double           m_Elasticity{ 0.02 };
   double           m_Rigidity{ 0.3 };

@@ -373,13 +373,19 @@ SnakeContourFilter<TInputImage, TContourStack>::SectionsFromLabel(const Frame & 
     corners[0].push_back({ corner.dot(frame.u), corner.dot(frame.v) });
   }
   const PlaneGrid grid = CoveringGrid(corners, 0.0, frame.origin, frame.pixel);
-  auto            sections = PlaceSections(frame.slices, low, high, m_SliceStep);
+  auto            sections = m_FollowLabel ? PlaceSectionsThrough(frame.slices, low, m_SliceStep)
+                                           : PlaceSections(frame.slices, low, high, m_SliceStep);
   if (sections.empty())
   {
     itkExceptionMacro("The label lies beyond the CT's slices; are both images of the same space?");
   }
   std::vector<int> dropped(sections.size(), 0);
+  const double     slack = 0.5 * frame.slices.step;
   parallel(sections.size(), [&](std::size_t k) {
+    if (m_FollowLabel && !(sections[k].height > low - slack && sections[k].height < high + slack))
+    {
+      return;
+    }
     sections[k].pieces =
       ContoursOfLabel(field, grid, frame.u, frame.v, sections[k].height, parameters.minimumArea, dropped[k]);
   });
@@ -522,7 +528,7 @@ SnakeContourFilter<TInputImage, TContourStack>::GenerateData()
   const bool                 labelled = this->GetLabelImage() != nullptr;
   std::vector<BoneSection>   sections =
     labelled ? this->SectionsFromLabel(frame, parameters, parallel) : this->SectionsFromContours(frame);
-  if (labelled && m_RefineLabelOutline)
+  if (labelled && m_RefineLabelOutline && !m_FollowLabel)
   {
     RefineSections(sections, planes, frame.pixel, parameters, parallel, m_Report);
   }
@@ -538,7 +544,7 @@ SnakeContourFilter<TInputImage, TContourStack>::GenerateData()
                       << brightest << ", below BoneThreshold (" << m_BoneThreshold
                       << "). Do the CT and its start belong together?");
   }
-  if (!labelled)
+  if (!labelled || m_FollowLabel)
   {
     PropagateSections(sections, planes, frame.pixel, parameters, parallel, m_Report);
     this->ReportProgress(0.6F);
@@ -568,6 +574,7 @@ SnakeContourFilter<TInputImage, TContourStack>::PrintSelf(std::ostream & os, itk
   os << indent << "SliceStep: " << m_SliceStep << '\n';
   os << indent << "Label: " << m_Label << '\n';
   os << indent << "RefineLabelOutline: " << m_RefineLabelOutline << '\n';
+  os << indent << "FollowLabel: " << m_FollowLabel << '\n';
   os << indent << "RefineDistance: " << m_RefineDistance << '\n';
   os << indent << "Elasticity: " << m_Elasticity << '\n';
   os << indent << "Rigidity: " << m_Rigidity << '\n';

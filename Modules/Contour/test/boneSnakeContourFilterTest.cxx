@@ -138,6 +138,25 @@ TEST(SnakeContourFilter, ContoursEndWhereTheBoneDoes)
   EXPECT_FALSE(filter->GetOutput()->GetOpenEnd());
 }
 
+TEST(SnakeContourFilter, FollowsALabelOfOneSliceWhenAsked)
+{
+  const TestGrid grid;
+  auto           filter = Filter::New();
+  filter->SetInput(MakeImage<TestCT>(grid, BowedTube));
+  filter->SetLabelImage(MakeImage<TestLabels>(
+    grid, [](double x, double y, double z) { return std::abs(z - 11.0) < 0.5 ? BowedLabel(x, y, z) : 0; }));
+  filter->SetNumberOfLayers(1);
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetSlices().size(), 1u);
+  filter->FollowLabelOn();
+  filter->Update();
+  ASSERT_EQ(filter->GetOutput()->GetSlices().size(), grid.size[2]);
+  for (std::size_t k = 0; k < filter->GetOutput()->GetSlices().size(); ++k)
+  {
+    EXPECT_NEAR(MeanRadius(*filter->GetOutput(), k, 0), 9.0, 0.08);
+  }
+}
+
 TEST(SnakeContourFilter, RefinementMovesTheOutlineToTheEdge)
 {
   // A label that is half a voxel too large all around.
