@@ -80,18 +80,21 @@ Run(const Options & options, Session & session)
                              : options.attenuation ? HUToAttenuation::WaterScaled
                                                    : HUToAttenuation::None);
   session.Watch(source, "drr");
-  for (std::size_t i = 0; i < views.size(); ++i)
+  for (unsigned int i = 0; i < views.size(); ++i)
   {
-    source->SetGeometry(views[i]);
-    source->Update();
-    WriteImage(source->GetOutput(), ViewPath(options.output, i, views.size()));
-    if (options.walk)
-    {
-      const auto &       filter = dynamic_cast<const DRRImageFilter<DensityMesh<double>, Radiograph> &>(*source);
-      std::ostringstream text;
-      text << ViewPath(options.output, i, views.size()) << ": " << filter.GetMeanCellsPassed() << " tetrahedra a ray\n";
-      session.Print(text.str());
-    }
+    source->SetGeometry(i, views[i]);
+  }
+  source->Update();
+  for (unsigned int i = 0; i < views.size(); ++i)
+  {
+    WriteImage(source->GetOutput(i), ViewPath(options.output, i, views.size()));
+  }
+  if (options.walk)
+  {
+    const auto &       filter = dynamic_cast<const DRRImageFilter<DensityMesh<double>, Radiograph> &>(*source);
+    std::ostringstream text;
+    text << "on average " << filter.GetMeanCellsPassed() << " tetrahedra a ray that meets any\n";
+    session.Print(text.str());
   }
 }
 } // namespace

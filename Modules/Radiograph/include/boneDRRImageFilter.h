@@ -82,7 +82,7 @@ protected:
   void
   VerifyPreconditions() ITKv5_CONST override;
   void
-  ComputeIntegrals(float * integrals) override;
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 

@@ -73,7 +73,8 @@ DRRImageFilter<TMesh, TOutputImage>::VerifyMesh(const std::vector<Vector3> & poi
 
 template <typename TMesh, typename TOutputImage>
 void
-DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(float * integrals)
+DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                                                      const std::vector<float *> &            integrals)
 {
   const TMesh *        mesh = this->GetInput();
   std::vector<Vector3> points(mesh->GetNumberOfPoints());
@@ -87,21 +88,23 @@ DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(float * integrals)
   const auto            conversion = this->GetCurve().Line();
   MeshRadiographOptions options{ m_MinimumRegion, m_MaximumRegion, conversion.scale, conversion.offset };
   const LoopRunner      loops = this->MakeLoops();
-  const auto &          view = this->GetGeometry()->GetView();
   m_MeanCellsPassed = 0.0;
   if (m_Method == DRRMethod::Projection)
   {
-    ProjectMesh(points, mesh->GetCells(), view, options, loops, integrals);
+    ProjectMesh(points, mesh->GetCells(), views, options, loops, integrals);
     return;
   }
-  std::vector<std::int32_t> passed(static_cast<std::size_t>(view.size[0]) * view.size[1]);
-  WalkMesh(points, mesh->GetCells(), view, options, loops, integrals, passed.data());
   double      sum = 0.0;
   std::size_t hit = 0;
-  for (std::int32_t cells : passed)
+  for (std::size_t i = 0; i < views.size(); ++i)
   {
-    sum += cells;
-    hit += cells > 0 ? 1 : 0;
+    std::vector<std::int32_t> passed(static_cast<std::size_t>(views[i].size[0]) * views[i].size[1]);
+    WalkMesh(points, mesh->GetCells(), views[i], options, loops, integrals[i], passed.data());
+    for (std::int32_t cells : passed)
+    {
+      sum += cells;
+      hit += cells > 0 ? 1 : 0;
+    }
   }
   m_MeanCellsPassed = hit > 0 ? sum / static_cast<double>(hit) : 0.0;
 }

@@ -10,17 +10,20 @@
 
 #include <itkImageSource.h>
 
+#include <string>
+#include <vector>
+
 namespace bone
 {
 /** \class RadiographSource
  * \brief What the filters that make a radiograph share: the geometry as an input, the conversion to attenuation, and an
  * output image that knows where it is.
  *
- * Inputs: "Geometry", an XRayGeometry; editing it in place re-runs the filter.
- * Output: an image of columns x rows x 1 pixels in physical space: its origin is the centre of pixel (0, 0), its
- * directions are the detector's U, V and U x V, its spacing the pixels' (1 mm along the third). A value is the line
- * integral from the source (parallel: from infinity) to the pixel's centre, in the density's unit times mm, or without
- * unit where HUToAttenuation is not None. The whole image is always made.
+ * Inputs: "Geometry", an XRayGeometry, and further views, which are made in the same run; editing one in place re-runs
+ * the filter. Output: for each view an image of columns x rows x 1 pixels in physical space: its origin is the centre
+ * of pixel (0, 0), its directions are the detector's U, V and U x V, its spacing the pixels' (1 mm along the third). A
+ * value is the line integral from the source (parallel: from infinity) to the pixel's centre, in the density's unit
+ * times mm, or without unit where HUToAttenuation is not None. The whole image is always made.
  *
  * Parameters: HUToAttenuation (default None), WaterAttenuation (per mm, default that at 60 keV), BoneSlope (Bilinear)
  * and AttenuationTable (Table), see AttenuationCurve.
@@ -52,6 +55,22 @@ public:
     return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput("Geometry"));
   }
 
+  /** View `index`, whose radiograph is GetOutput(index); views 0..index must be set. */
+  virtual void
+  SetGeometry(unsigned int index, const XRayGeometry * geometry)
+  {
+    this->itk::ProcessObject::SetInput(this->GeometryName(index), const_cast<XRayGeometry *>(geometry));
+    for (unsigned int i = this->GetNumberOfIndexedOutputs(); i <= index; ++i)
+    {
+      this->SetNthOutput(i, this->MakeOutput(i));
+    }
+  }
+  const XRayGeometry *
+  GetGeometry(unsigned int index) const
+  {
+    return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput(GeometryName(index)));
+  }
+
   itkSetMacro(HUToAttenuation, HUToAttenuation);
   itkGetConstMacro(HUToAttenuation, HUToAttenuation);
   itkSetMacro(WaterAttenuation, double);
@@ -71,12 +90,15 @@ protected:
   GenerateOutputInformation() override;
   void
   EnlargeOutputRequestedRegion(itk::DataObject * output) override;
+  /** The outputs are of different sizes: each is made whole. */
+  void
+  GenerateOutputRequestedRegion(itk::DataObject * output) override;
   void
   GenerateData() override;
 
-  /** Writes rows x columns line integrals, row by row. */
+  /** Writes rows x columns line integrals of each view, row by row. */
   virtual void
-  ComputeIntegrals(float * integrals) = 0;
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) = 0;
 
   AttenuationCurve
   GetCurve() const
@@ -91,6 +113,12 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
+  static std::string
+  GeometryName(unsigned int index)
+  {
+    return index == 0 ? "Geometry" : "Geometry" + std::to_string(index);
+  }
+
   HUToAttenuation m_HUToAttenuation{ HUToAttenuation::None };
   double          m_WaterAttenuation{ WaterAttenuationAt60keV };
   double          m_BoneSlope{ AttenuationCurve().boneSlope };

@@ -23,6 +23,13 @@ void
 RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
 {
   Superclass::VerifyPreconditions();
+  for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
+  {
+    if (this->GetGeometry(i) == nullptr)
+    {
+      itkExceptionMacro("View " << i << " has no geometry.");
+    }
+  }
   if (!(m_WaterAttenuation > 0) || !std::isfinite(m_WaterAttenuation))
   {
     itkExceptionMacro("WaterAttenuation is " << m_WaterAttenuation << " per mm; it must be positive.");
@@ -49,28 +56,31 @@ template <typename TOutputImage>
 void
 RadiographSource<TOutputImage>::GenerateOutputInformation()
 {
-  const auto &  view = this->GetGeometry()->GetView();
-  const Vector3 axes[3] = { view.detectorU, view.detectorV, view.detectorU.cross(view.detectorV) };
-
-  typename TOutputImage::RegionType    region;
-  typename TOutputImage::PointType     origin;
-  typename TOutputImage::SpacingType   spacing;
-  typename TOutputImage::DirectionType direction;
-  for (unsigned int k = 0; k < 3; ++k)
+  for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
   {
-    region.SetSize(k, k < 2 ? view.size[k] : 1);
-    origin[k] = view.detectorOrigin[k];
-    spacing[k] = k < 2 ? view.spacing[k] : 1.0;
-    for (unsigned int row = 0; row < 3; ++row)
+    const auto &  view = this->GetGeometry(i)->GetView();
+    const Vector3 axes[3] = { view.detectorU, view.detectorV, view.detectorU.cross(view.detectorV) };
+
+    typename TOutputImage::RegionType    region;
+    typename TOutputImage::PointType     origin;
+    typename TOutputImage::SpacingType   spacing;
+    typename TOutputImage::DirectionType direction;
+    for (unsigned int k = 0; k < 3; ++k)
     {
-      direction(row, k) = axes[k][row];
+      region.SetSize(k, k < 2 ? view.size[k] : 1);
+      origin[k] = view.detectorOrigin[k];
+      spacing[k] = k < 2 ? view.spacing[k] : 1.0;
+      for (unsigned int row = 0; row < 3; ++row)
+      {
+        direction(row, k) = axes[k][row];
+      }
     }
+    TOutputImage * output = this->GetOutput(i);
+    output->SetLargestPossibleRegion(region);
+    output->SetOrigin(origin);
+    output->SetSpacing(spacing);
+    output->SetDirection(direction);
   }
-  TOutputImage * output = this->GetOutput();
-  output->SetLargestPossibleRegion(region);
-  output->SetOrigin(origin);
-  output->SetSpacing(spacing);
-  output->SetDirection(direction);
 }
 
 template <typename TOutputImage>
@@ -79,6 +89,16 @@ RadiographSource<TOutputImage>::EnlargeOutputRequestedRegion(itk::DataObject * o
 {
   Superclass::EnlargeOutputRequestedRegion(output);
   output->SetRequestedRegionToLargestPossibleRegion();
+}
+
+template <typename TOutputImage>
+void
+RadiographSource<TOutputImage>::GenerateOutputRequestedRegion(itk::DataObject *)
+{
+  for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
+  {
+    this->GetOutput(i)->SetRequestedRegionToLargestPossibleRegion();
+  }
 }
 
 template <typename TOutputImage>
@@ -100,12 +120,22 @@ void
 RadiographSource<TOutputImage>::GenerateData()
 {
   this->AllocateOutputs();
-  TOutputImage *     output = this->GetOutput();
-  std::vector<float> integrals(output->GetBufferedRegion().GetNumberOfPixels());
-  this->ComputeIntegrals(integrals.data());
-  std::transform(integrals.begin(), integrals.end(), output->GetBufferPointer(), [](float value) {
-    return static_cast<OutputPixelType>(value);
-  });
+  std::vector<XRayGeometry::View> views;
+  std::vector<std::vector<float>> integrals;
+  std::vector<float *>            pointers;
+  for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
+  {
+    views.push_back(this->GetGeometry(i)->GetView());
+    integrals.emplace_back(this->GetOutput(i)->GetBufferedRegion().GetNumberOfPixels());
+    pointers.push_back(integrals.back().data());
+  }
+  this->ComputeIntegrals(views, pointers);
+  for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
+  {
+    std::transform(integrals[i].begin(), integrals[i].end(), this->GetOutput(i)->GetBufferPointer(), [](float value) {
+      return static_cast<OutputPixelType>(value);
+    });
+  }
 }
 
 template <typename TOutputImage>

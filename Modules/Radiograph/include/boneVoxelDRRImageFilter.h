@@ -74,7 +74,7 @@ protected:
   void
   VerifyInputInformation() ITKv5_CONST override;
   void
-  ComputeIntegrals(float * integrals) override;
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 

@@ -129,10 +129,16 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>
 void
-VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::ComputeIntegrals(float * integrals)
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::ComputeIntegrals(
+  const std::vector<XRayGeometry::View> & views,
+  const std::vector<float *> &            integrals)
 {
-  const LoopRunner loops = this->MakeLoops();
-  ProjectVoxels(this->CopyGrid(this->FindRegion(), loops.prepare), this->GetGeometry()->GetView(), loops, integrals);
+  const LoopRunner  loops = this->MakeLoops();
+  const VoxelVolume grid = this->CopyGrid(this->FindRegion(), loops.prepare);
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    ProjectVoxels(grid, views[i], loops, integrals[i]);
+  }
 }
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>

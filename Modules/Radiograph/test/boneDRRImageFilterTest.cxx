@@ -120,6 +120,38 @@ TEST(DRRImageFilter, WritesTheKernelsIntegrals)
   EXPECT_EQ(pixels, expected);
 }
 
+TEST(DRRImageFilter, MakesSeveralViewsInOneRun)
+{
+  const auto one = MakeFilter(), both = MakeFilter();
+  auto       other = XRayGeometry::New();
+  other->SetView(XRayGeometry::Framing(lower, upper, Vector3::UnitX(), Vector3::UnitZ(), 400, 600, 45));
+  both->SetGeometry(1, other);
+  for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
+  {
+    both->SetMethod(method);
+    one->SetMethod(method);
+    both->GetOutput(1)->Update();
+    one->SetGeometry(MakeGeometry());
+    one->Update();
+    EXPECT_EQ(Pixels(both->GetOutput(0)), Pixels(one->GetOutput()));
+    one->SetGeometry(other);
+    one->Update();
+    EXPECT_EQ(Pixels(both->GetOutput(1)), Pixels(one->GetOutput()));
+    EXPECT_EQ(both->GetOutput(1)->GetOrigin(), one->GetOutput()->GetOrigin());
+  }
+  Counter counter(both);
+  both->Update();
+  both->GetOutput(1)->Update();
+  EXPECT_EQ(counter.runs, 0);
+  auto view = other->GetView();
+  view.source.y() += 1;
+  other->SetView(view);
+  both->Update();
+  EXPECT_EQ(counter.runs, 1);
+  both->SetGeometry(3, other);
+  ExpectRefusal(both, "View 2");
+}
+
 TEST(DRRImageFilter, HasTheSameOutputForAnyNumberOfThreads)
 {
   for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
