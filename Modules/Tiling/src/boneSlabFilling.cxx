@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <stdexcept>
 
 namespace bone
@@ -22,11 +23,13 @@ namespace
 {
 constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
-constexpr double Shift = 1e-5; // mm, parts vertices of the two slices that lie over each other
+constexpr int    UsualShifts = 2; ///< looked at always; others where these do not do
+constexpr double Shift = 1e-5;    // mm, parts vertices of the two slices that lie over each other
 
 /** The triangulation of a slice and of what is outside the bone. */
 struct Side
 {
+  Vector2          shift{ Vector2::Zero() }; ///< subtracted from the slice's coordinates
   BoxTriangulation box;
   std::vector<int> poolId; ///< of each vertex; -1 for the box
   std::vector<int> region; ///< of each triangle; 0 outside
@@ -38,8 +41,12 @@ struct Bounds
   Vector2 low, high;
 };
 
+/** A box around all contours, those of the upper slice moved by -shift. */
 Bounds
-BoundsOf(const VertexPool & pool, const std::vector<Section> & lower, const std::vector<Section> & upper)
+BoundsOf(const VertexPool &           pool,
+         const std::vector<Section> & lower,
+         const std::vector<Section> & upper,
+         const Vector2 &              shift)
 {
   Bounds bounds{ Vector2::Constant(std::numeric_limits<double>::max()),
                  Vector2::Constant(std::numeric_limits<double>::lowest()) };
@@ -49,8 +56,9 @@ BoundsOf(const VertexPool & pool, const std::vector<Section> & lower, const std:
     {
       for (int v : section.walks[0])
       {
-        bounds.low = bounds.low.cwiseMin(pool.plane[v]);
-        bounds.high = bounds.high.cwiseMax(pool.plane[v]);
+        const Vector2 q = sections == &upper ? Vector2(pool.plane[v] - shift) : pool.plane[v];
+        bounds.low = bounds.low.cwiseMin(q);
+        bounds.high = bounds.high.cwiseMax(q);
       }
     }
   }
@@ -64,9 +72,11 @@ Side
 MakeSide(const VertexPool &           pool,
          const std::vector<Section> & sections,
          const std::vector<int> &     groupOf,
-         const Bounds &               bounds)
+         const Bounds &               bounds,
+         const Vector2 &              shift)
 {
-  Side                     side;
+  Side side;
+  side.shift = shift;
   ConstrainedTriangulation outside(bounds.low, bounds.high);
   std::map<int, int>       local;
   side.poolId.assign(Corners, -1);
@@ -81,7 +91,7 @@ MakeSide(const VertexPool &           pool,
     {
       for (int v : *loop)
       {
-        const int id = outside.Insert(pool.plane[v]);
+        const int id = outside.Insert(pool.plane[v] - shift);
         if (id != static_cast<int>(side.poolId.size()))
         {
           throw std::runtime_error("contours touch");
@@ -121,7 +131,7 @@ MakeSide(const VertexPool &           pool,
         if (added.second)
         {
           side.poolId.push_back(v);
-          side.box.points.push_back(pool.plane[v]);
+          side.box.points.push_back(pool.plane[v] - shift);
         }
         vertices[i] = added.first->second;
       }
@@ -209,22 +219,13 @@ public:
     , m_Overlay(OverlaySides(lower, upper))
   {}
 
-  SlabFilling
-  Run(std::size_t groups, const std::vector<char> & connected, double low, double high)
+  /** Area of bone that has the same region, of the same group, on both slices; -1 where a group with members on both
+   * has none in common. */
+  double
+  CommonArea(const std::vector<char> & connected) const
   {
-    CheckOverlaps(groups, connected);
-    MakeColumns();
-    MakePoints(low, high);
-    FillPrisms();
-    FillMiddle();
-    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner));
-  }
-
-private:
-  void
-  CheckOverlaps(std::size_t groups, const std::vector<char> & connected) const
-  {
-    std::vector<double> area(groups, 0.0);
+    std::vector<double> area(connected.size(), 0.0);
+    double              common = 0.0;
     for (const auto & t : m_Overlay.triangles)
     {
       const int g = m_Sides[0]->group[t.first];
@@ -232,18 +233,40 @@ private:
       {
         const auto &  p = m_Overlay.points;
         const Vector2 d = p[t.vertices[1]] - p[t.vertices[0]], e = p[t.vertices[2]] - p[t.vertices[0]];
-        area[g] += 0.5 * (d.x() * e.y() - d.y() * e.x());
+        const double  here = 0.5 * (d.x() * e.y() - d.y() * e.x());
+        area[g] += here;
+        common += m_Sides[0]->region[t.first] == m_Sides[1]->region[t.second] ? here : 0.0;
       }
     }
-    for (std::size_t g = 0; g < groups; ++g)
+    for (std::size_t g = 0; g < connected.size(); ++g)
     {
       if (connected[g] && !(area[g] > 0))
       {
-        throw std::runtime_error("pieces that belong together do not overlap");
+        return -1.0;
       }
     }
+    return common;
   }
 
+  SlabFilling
+  Run(double low, double high)
+  {
+    MakeColumns();
+    MakePoints(low, high);
+    FillPrisms();
+    FillMiddle();
+    for (const Id4 & c : m_Mesh.tetrahedra)
+    {
+      const auto & p = m_Mesh.points;
+      if (Orient3D(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) <= 0)
+      {
+        throw std::runtime_error("its contours are too close to be told apart");
+      }
+    }
+    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner));
+  }
+
+private:
   void
   MakeColumns()
   {
@@ -283,8 +306,9 @@ private:
       for (std::size_t v = 0; v < m_Sides[s]->poolId.size(); ++v)
       {
         const int id = m_Sides[s]->poolId[v];
-        m_Mesh.points.push_back(id >= 0 ? m_Pool.space[id]
-                                        : m_Stack.FromPlane(m_Sides[s]->box.points[v], s == 0 ? low : high));
+        m_Mesh.points.push_back(
+          id >= 0 ? m_Pool.space[id]
+                  : m_Stack.FromPlane(m_Sides[s]->box.points[v] + m_Sides[s]->shift, s == 0 ? low : high));
       }
     }
     m_FirstSteiner = static_cast<IdType>(m_Mesh.points.size());
@@ -293,7 +317,7 @@ private:
       const double share = (plane + 1.0) / (m_Planes + 1.0);
       for (const Vector2 & q : m_Overlay.points)
       {
-        m_Mesh.points.push_back(m_Stack.FromPlane(q, (1 - share) * low + share * high));
+        m_Mesh.points.push_back(m_Stack.FromPlane(q + share * m_Sides[1]->shift, (1 - share) * low + share * high));
       }
     }
   }
@@ -457,6 +481,62 @@ private:
   IdType               m_First[2];
   IdType               m_FirstSteiner{ 0 };
 };
+Vector2
+CentroidOf(const VertexPool & pool, const std::vector<Section> & sections, const std::vector<int> & ids)
+{
+  Vector2 moment = Vector2::Zero();
+  double  area = 0.0;
+  for (int i : ids)
+  {
+    const auto polygon = OuterPolygon(pool.plane, sections[i]);
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
+    {
+      const Vector2 d = polygon[k] - polygon[0], e = polygon[k + 1] - polygon[0];
+      const double  twice = d.x() * e.y() - d.y() * e.x();
+      moment += twice * (polygon[0] + polygon[k] + polygon[k + 1]) / 3.0;
+      area += twice;
+    }
+  }
+  return moment / area;
+}
+
+/** How far the upper slice may be moved against the lower one: not at all, by the mean way of the groups' centroids,
+ * by the way of a group's. */
+std::vector<Vector2>
+CandidateShifts(const VertexPool &           pool,
+                const std::vector<Section> & lower,
+                const std::vector<Section> & upper,
+                const std::vector<Group> &   groups)
+{
+  std::vector<Vector2> ways;
+  Vector2              mean = Vector2::Zero();
+  for (const Group & group : groups)
+  {
+    if (!group.lower.empty() && !group.upper.empty())
+    {
+      ways.push_back(CentroidOf(pool, upper, group.upper) - CentroidOf(pool, lower, group.lower));
+      mean += ways.back();
+    }
+  }
+  std::vector<Vector2> shifts{ Vector2::Zero() };
+  if (!ways.empty())
+  {
+    shifts.push_back(mean / static_cast<double>(ways.size()));
+  }
+  if (ways.size() > 1)
+  {
+    shifts.insert(shifts.end(), ways.begin(), ways.end());
+  }
+  return shifts;
+}
+
+/** The slices' triangulations at a shift and their overlay. */
+struct Alignment
+{
+  Side                        below, above;
+  std::unique_ptr<SlabFiller> filler;
+  double                      common{ -1.0 };
+};
 } // namespace
 
 SlabFilling
@@ -482,19 +562,48 @@ FillSlab(const ContourStack &         stack,
     }
     connected.push_back(!group.lower.empty() && !group.upper.empty());
   }
-  const int slice = (lower.empty() ? upper : lower).front().slice;
-  try
+  const int                               slice = (lower.empty() ? upper : lower).front().slice;
+  std::string                             reason = "pieces that belong together do not overlap";
+  std::vector<std::unique_ptr<Alignment>> alignments;
+  for (const Vector2 & shift : CandidateShifts(pool, lower, upper, groups))
   {
-    const Bounds bounds = BoundsOf(pool, lower, upper);
-    const Side   below = MakeSide(pool, lower, lowerGroup, bounds), above = MakeSide(pool, upper, upperGroup, bounds);
-    SlabFiller   filler(stack, below, above, slice, pool);
-    return filler.Run(groups.size(), connected, lowerHeight, upperHeight);
+    if (static_cast<int>(alignments.size()) >= UsualShifts && alignments.front()->common >= 0)
+    {
+      break;
+    }
+    auto alignment = std::make_unique<Alignment>();
+    try
+    {
+      const Bounds bounds = BoundsOf(pool, lower, upper, shift);
+      alignment->below = MakeSide(pool, lower, lowerGroup, bounds, Vector2::Zero());
+      alignment->above = MakeSide(pool, upper, upperGroup, bounds, shift);
+      alignment->filler = std::make_unique<SlabFiller>(stack, alignment->below, alignment->above, slice, pool);
+      alignment->common = alignment->filler->CommonArea(connected);
+    }
+    catch (const std::runtime_error & error)
+    {
+      reason = error.what();
+    }
+    alignments.push_back(std::move(alignment));
+    std::stable_sort(
+      alignments.begin(), alignments.end(), [](const auto & a, const auto & b) { return a->common > b->common; });
   }
-  catch (const std::runtime_error & error)
+  for (const auto & alignment : alignments)
   {
-    throw std::runtime_error("slice " + std::to_string(slice) + ": the space next to it cannot be filled, " +
-                             error.what() + "; use a smaller slice step");
+    try
+    {
+      if (alignment->common >= 0)
+      {
+        return alignment->filler->Run(lowerHeight, upperHeight);
+      }
+    }
+    catch (const std::runtime_error & error)
+    {
+      reason = error.what();
+    }
   }
+  throw std::runtime_error("slice " + std::to_string(slice) + ": the space next to it cannot be filled, " + reason +
+                           "; use a smaller slice step");
 }
 } // namespace tiling
 } // namespace bone
