@@ -214,7 +214,7 @@ private:
     History renamed;
     for (const auto & item : history)
     {
-      const auto pair = std::minmax(m_Bodies.Find(item.first.first), m_Bodies.Find(item.first.second));
+      const auto pair = std::minmax({ m_Bodies.Find(item.first.first), m_Bodies.Find(item.first.second) });
       if (pair.first != pair.second)
       {
         Touch & touch = renamed[{ pair.first, pair.second }];
