@@ -23,6 +23,7 @@ namespace
 {
 constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
+constexpr double ShiftGain = 1.5; ///< a shift leans upright walls too, so it must pay
 constexpr int    UsualShifts = 2; ///< looked at always; others where these do not do
 constexpr double Shift = 1e-5;    // mm, parts vertices of the two slices that lie over each other
 
@@ -578,7 +579,7 @@ FillSlab(const ContourStack &         stack,
       alignment->below = MakeSide(pool, lower, lowerGroup, bounds, Vector2::Zero());
       alignment->above = MakeSide(pool, upper, upperGroup, bounds, shift);
       alignment->filler = std::make_unique<SlabFiller>(stack, alignment->below, alignment->above, slice, pool);
-      alignment->common = alignment->filler->CommonArea(connected);
+      alignment->common = alignment->filler->CommonArea(connected) / (shift.isZero() ? 1.0 : ShiftGain);
     }
     catch (const std::runtime_error & error)
     {

@@ -25,7 +25,7 @@ struct SlabFilling
  *
  * 1. Each slice's triangulation is completed to one of a box by a constrained Delaunay triangulation of what is outside
  *    the bone, and the two are overlaid (\ref PlanarOverlay).
- *    The upper slice is moved against the lower one first if more bone lies over bone then.
+ *    The upper slice is moved against the lower one first if much more bone lies over bone then.
  * 2. The overlay, placed between the slices, parts the slab: a triangle of a slice and the overlay's triangles in it
  *    span a convex prism, which is filled with tetrahedra from its smallest vertex. They take the region of the slice's
  *    triangle. Where regions lie on top of each other that may not touch (trabecular bone below nothing), or pieces
