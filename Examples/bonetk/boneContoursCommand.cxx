@@ -155,7 +155,12 @@ AddContoursCommand(CLI::App & app, Action & action)
                  options->layerDistance,
                  "Least distance between a contour and the next inside it in mm; default 0.8 or a pixel")
     ->check(Positive());
-  command->add_flag("--refine", options->refine, "Move the label's outline to the edges of the CT, by half a pixel at most");
+  command
+    ->add_flag(
+      "--follow", options->follow, "The label map marks some slices only: follow the bone from them on the others")
+    ->needs(command->get_option("--labels"));
+  command->add_flag(
+    "--refine", options->refine, "Move the label's outline to the edges of the CT, by half a pixel at most");
   command->add_flag(
     "--keep-small", options->keepSmall, "Keep pieces and holes of a single slice, and bodies of little volume");
   command

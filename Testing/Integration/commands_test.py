@@ -72,6 +72,22 @@ class Commands(TestCase):
         self.succeed("contours", "ct.nii.gz", "--init", "init.mrk.json", "--slice-step", 6, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
 
+    def test_label_map_of_a_few_slices(self):
+        """With --follow, the bone is followed from the slices that are marked to those that are not."""
+        self.succeed("phantom", "--spacing", 1.5, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        whole = nibabel.load("l.nii.gz")
+        few = numpy.asarray(whole.dataobj).copy()
+        marked = [few.shape[2] // 8, few.shape[2] // 3]
+        few[:, :, [k for k in range(few.shape[2]) if k not in marked]] = 0
+        nibabel.save(nibabel.Nifti1Image(few, whole.affine), "few.nii.gz")
+        self.succeed("contours", "ct.nii.gz", "--labels", "few.nii.gz", "--follow", "--slice-step", 3, "-o", "c.vtp")
+        self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+        self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 3, "-o", "all.vtp")
+        counts = [int(next(word for word in self.succeed("info", name)[0].split() if word.isdigit()))
+                  for name in ("c.vtp", "all.vtp")]
+        self.assertGreater(counts[0], 0.8 * counts[1])
+        self.refuse("contours", "ct.nii.gz", "--init", "c.vtp", "--follow", "-o", "x.vtp", code=2)
+
     def test_quiet(self):
         self.assertEqual(self.succeed("phantom", "--quiet", "--spacing", 4, "-o", "ct.nii.gz"), ("", ""))
 
