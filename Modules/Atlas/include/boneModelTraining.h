@@ -1,0 +1,58 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneModelTraining_h
+#define boneModelTraining_h
+
+#include "boneGramAnalysis.h"
+#include "bonePointAlignment.h"
+#include "boneStatisticalModel.h"
+#include "boneTrainingSet.h"
+
+namespace bone
+{
+/** Parameters of \ref TrainModel; see \ref StatisticalModelEstimator. */
+struct TrainingParameters
+{
+  AlignmentKind alignment{ AlignmentKind::Rigid };
+  double        proportion{ 0.98 };
+  int           maximumModes{ 0 };
+  bool          combined{ false };
+  bool          volumeWeighted{ false };
+  double        outlierThreshold{ 3.5 };
+  bool          rejectOutliers{ false };
+  std::size_t   blockBytes{ std::size_t(1) << 30 };
+};
+
+/** How far each subject is from the mean. */
+struct SubjectDeviation
+{
+  std::string name;
+  double      shape{ 0.0 };        ///< root mean square distance of points to the mean, mm
+  double      density{ 0.0 };      ///< root mean square difference of coefficients to the mean, density units
+  double      shapeScore{ 0.0 };   ///< modified z-score of the former among all subjects
+  double      densityScore{ 0.0 }; ///< and of the latter
+  bool        outlier{ false };    ///< a score is above the threshold
+  bool        used{ true };        ///< in the model
+};
+
+/** A trained model and how its subjects lie. */
+struct TrainingResult
+{
+  StatisticalModelContent       content;
+  std::vector<SubjectDeviation> subjects;
+};
+
+/** The kernel of \ref StatisticalModelEstimator. `progress` is called with 0..1. Throws itk::ExceptionObject. */
+TrainingResult
+TrainModel(
+  const TrainingSet &                 set,
+  const TrainingParameters &          parameters,
+  const std::function<void(double)> & progress = [](double) {});
+
+/** Modified z-scores 0.6745 (x - median) / median |x - median| (Iglewicz & Hoaglin 1993); 0 where all are equal. */
+std::vector<double>
+ModifiedScores(const std::vector<double> & values);
+} // namespace bone
+
+#endif

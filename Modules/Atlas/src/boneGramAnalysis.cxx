@@ -1,0 +1,229 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneGramAnalysis.h"
+
+#include <itkMultiThreaderBase.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace bone
+{
+namespace
+{
+constexpr Eigen::Index Batch = 16;         // vectors streamed at once
+constexpr Eigen::Index RowChunk = 4096;    // entries a thread works on
+constexpr Eigen::Index ColumnTile = 32;    // vectors of a held block that a thread works on
+constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
+
+void
+InParallel(Eigen::Index count, const std::function<void(Eigen::Index)> & body)
+{
+  itk::MultiThreaderBase::New()->ParallelizeArray(
+    0,
+    static_cast<itk::SizeValueType>(count),
+    [&body](itk::SizeValueType i) { body(static_cast<Eigen::Index>(i)); },
+    nullptr);
+}
+
+/** Calls body(first row, rows) for fixed chunks of all rows. */
+void
+OverRows(Eigen::Index rows, const std::function<void(Eigen::Index, Eigen::Index)> & body)
+{
+  InParallel((rows + RowChunk - 1) / RowChunk, [&](Eigen::Index chunk) {
+    const Eigen::Index first = chunk * RowChunk;
+    body(first, std::min(RowChunk, rows - first));
+  });
+}
+
+/** Reads vectors, centred and scaled to the plain inner product. */
+class CentredReader
+{
+public:
+  CentredReader(const VectorSource & source, const Eigen::VectorXd & weights)
+    : m_Source(source)
+    , m_Scale(weights.cwiseSqrt())
+    , m_Mean(Eigen::VectorXd::Zero(source.dimension))
+  {
+    Eigen::VectorXd y(source.dimension);
+    for (Eigen::Index i = 0; i < source.count; ++i)
+    {
+      source.load(i, y.data());
+      m_Mean += y / static_cast<double>(source.count);
+    }
+  }
+  const Eigen::VectorXd &
+  Mean() const
+  {
+    return m_Mean;
+  }
+  Eigen::MatrixXd
+  Read(Eigen::Index first, Eigen::Index count) const
+  {
+    Eigen::MatrixXd block(m_Source.dimension, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+    {
+      m_Source.load(first + i, block.col(i).data());
+      block.col(i) -= m_Mean;
+      if (m_Scale.size() > 0)
+      {
+        block.col(i).array() *= m_Scale.array();
+      }
+    }
+    return block;
+  }
+
+private:
+  const VectorSource & m_Source;
+  Eigen::VectorXd      m_Scale;
+  Eigen::VectorXd      m_Mean;
+};
+
+void
+InnerProducts(const Eigen::MatrixXd & a, const Eigen::MatrixXd & b, Eigen::Ref<Eigen::MatrixXd> products)
+{
+  const Eigen::Index tiles = (a.cols() + ColumnTile - 1) / ColumnTile;
+  InParallel(tiles, [&](Eigen::Index tile) {
+    const Eigen::Index first = tile * ColumnTile, count = std::min(ColumnTile, a.cols() - first);
+    products.middleRows(first, count).noalias() = a.middleCols(first, count).transpose() * b;
+  });
+}
+
+Eigen::MatrixXd
+GramMatrix(const CentredReader & reader, const VectorSource & source, std::size_t blockBytes)
+{
+  const Eigen::Index n = source.count;
+  const auto         fitting =
+    static_cast<Eigen::Index>(blockBytes / (sizeof(double) * static_cast<std::size_t>(source.dimension)));
+  const Eigen::Index size = std::min(n, std::max(fitting, Batch));
+  Eigen::MatrixXd    gram(n, n);
+  for (Eigen::Index first = 0; first < n; first += size)
+  {
+    const Eigen::Index    held = std::min(size, n - first);
+    const Eigen::MatrixXd block = reader.Read(first, held);
+    InnerProducts(block, block, gram.block(first, first, held, held));
+    for (Eigen::Index next = first + held; next < n; next += Batch)
+    {
+      const Eigen::Index    count = std::min(Batch, n - next);
+      const Eigen::MatrixXd other = reader.Read(next, count);
+      InnerProducts(block, other, gram.block(first, next, held, count));
+      gram.block(next, first, count, held) = gram.block(first, next, held, count).transpose();
+    }
+  }
+  return gram;
+}
+
+Eigen::Index
+CountModes(const Eigen::VectorXd & variances, double total, const GramParameters & parameters)
+{
+  Eigen::Index k = 0;
+  double       explained = 0;
+  const bool   all = parameters.proportion >= 1.0;
+  while (k < variances.size() && variances[k] > NoiseLevel * variances[0] &&
+         (all || explained < parameters.proportion * total) &&
+         (parameters.maximumModes <= 0 || k < parameters.maximumModes))
+  {
+    explained += variances[k++];
+  }
+  return k;
+}
+
+/** Makes the columns orthonormal: Q of the Cholesky-QR factorisation, in place. */
+void
+Orthonormalize(Eigen::MatrixXd & modes)
+{
+  const Eigen::Index           k = modes.cols(), chunks = (modes.rows() + RowChunk - 1) / RowChunk;
+  Eigen::MatrixXd              products = Eigen::MatrixXd::Zero(k, k);
+  const Eigen::Index           wave = 8; // partial products held at once; their order of addition is fixed
+  std::vector<Eigen::MatrixXd> partial(static_cast<std::size_t>(wave));
+  for (Eigen::Index first = 0; first < chunks; first += wave)
+  {
+    const Eigen::Index count = std::min(wave, chunks - first);
+    InParallel(count, [&](Eigen::Index i) {
+      const Eigen::Index row = (first + i) * RowChunk;
+      const auto         rows = modes.middleRows(row, std::min(RowChunk, modes.rows() - row));
+      partial[static_cast<std::size_t>(i)] = rows.transpose() * rows;
+    });
+    for (Eigen::Index i = 0; i < count; ++i)
+    {
+      products += partial[static_cast<std::size_t>(i)];
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(products);
+  OverRows(modes.rows(), [&](Eigen::Index first, Eigen::Index rows) {
+    const Eigen::MatrixXd solved = factor.matrixL().solve(modes.middleRows(first, rows).transpose());
+    modes.middleRows(first, rows) = solved.transpose();
+  });
+}
+
+/** Gives each mode the sign that makes its largest entry positive; of equally large ones the first decides. */
+void
+FixSigns(Eigen::MatrixXd & modes, Eigen::MatrixXd & vectors)
+{
+  for (Eigen::Index k = 0; k < modes.cols(); ++k)
+  {
+    Eigen::Index largest = 0;
+    modes.col(k).cwiseAbs().maxCoeff(&largest);
+    if (modes(largest, k) < 0)
+    {
+      modes.col(k) = -modes.col(k);
+      vectors.col(k) = -vectors.col(k);
+    }
+  }
+}
+} // namespace
+
+PrincipalModes
+AnalyzeVectors(const VectorSource &    source,
+               const Eigen::VectorXd & weights,
+               const GramParameters &  parameters,
+               Eigen::MatrixXd *       scores)
+{
+  const Eigen::Index n = source.count, d = source.dimension;
+  if (n < 2 || d < 1)
+  {
+    throw std::invalid_argument("Modes of variation need two subjects or more.");
+  }
+  const CentredReader   reader(source, weights);
+  const Eigen::MatrixXd gram = GramMatrix(reader, source, parameters.blockBytes) / static_cast<double>(n - 1);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const Eigen::VectorXd                                variances = eigen.eigenvalues().reverse();
+
+  PrincipalModes result;
+  result.mean = reader.Mean();
+  result.weights = weights;
+  result.totalVariance = gram.trace();
+  const Eigen::Index k = CountModes(variances, result.totalVariance, parameters);
+  result.variances = variances.head(k);
+  Eigen::MatrixXd vectors = eigen.eigenvectors().rowwise().reverse().leftCols(k);
+  result.modes.setZero(d, k);
+  const Eigen::VectorXd scale = (static_cast<double>(n - 1) * result.variances).cwiseSqrt().cwiseInverse();
+  for (Eigen::Index first = 0; first < n && k > 0; first += Batch)
+  {
+    const Eigen::Index    count = std::min(Batch, n - first);
+    const Eigen::MatrixXd batch = reader.Read(first, count);
+    const Eigen::MatrixXd parts = vectors.middleRows(first, count) * scale.asDiagonal();
+    OverRows(d, [&](Eigen::Index row, Eigen::Index rows) {
+      result.modes.middleRows(row, rows).noalias() += batch.middleRows(row, rows) * parts;
+    });
+  }
+  if (k > 0)
+  {
+    Orthonormalize(result.modes);
+  }
+  if (weights.size() > 0)
+  {
+    result.modes.array().colwise() /= weights.cwiseSqrt().array();
+  }
+  FixSigns(result.modes, vectors);
+  if (scores != nullptr)
+  {
+    *scores = vectors * std::sqrt(static_cast<double>(n - 1));
+  }
+  return result;
+}
+} // namespace bone

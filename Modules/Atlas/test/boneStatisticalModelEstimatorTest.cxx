@@ -1,0 +1,258 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneStatisticalModelEstimator.h"
+
+#include "boneAtlasTestPopulation.h"
+
+#include <itkMultiThreaderBase.h>
+
+#include <gtest/gtest.h>
+
+namespace
+{
+using namespace bone;
+using namespace bone::test;
+using Estimator = StatisticalModelEstimator<DensityMesh<double>>;
+
+Estimator::Pointer
+Estimate(
+  const std::vector<MeshArrays> &          subjects,
+  const std::function<void(Estimator *)> & set = [](Estimator *) {})
+{
+  auto estimator = Estimator::New();
+  estimator->SetInput(MakeSet(subjects));
+  estimator->SetVarianceProportion(1.0);
+  set(estimator);
+  estimator->Update();
+  return estimator;
+}
+
+double
+LargestDistance(const std::vector<Vector3> & a, const std::vector<Vector3> & b)
+{
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    largest = std::max(largest, (a[i] - b[i]).norm());
+  }
+  return largest;
+}
+
+double
+OrthonormalityError(const PrincipalModes & model)
+{
+  const Eigen::Index k = model.GetNumberOfModes();
+  Eigen::MatrixXd    weighted = model.modes;
+  if (model.weights.size() > 0)
+  {
+    weighted.array().colwise() *= model.weights.array();
+  }
+  return (model.modes.transpose() * weighted - Eigen::MatrixXd::Identity(k, k)).cwiseAbs().maxCoeff();
+}
+
+/** Every training subject is the model of its own coefficients. */
+void
+ExpectReproduced(const StatisticalModel * model, const std::vector<MeshArrays> & subjects, AlignmentKind kind)
+{
+  const auto & content = model->GetContent();
+  for (const MeshArrays & subject : subjects)
+  {
+    std::vector<Vector3> points = subject.points;
+    Move(AlignToMean(points, content.mean.points, kind), points);
+    const Eigen::VectorXd shape = content.shape.Project(StackPoints(points));
+    const Eigen::VectorXd density = content.density.Project(
+      Eigen::Map<const Eigen::VectorXd>(subject.coefficients.data(), content.density.GetDimension()));
+    const MeshArrays made = model->Synthesize(shape, density);
+    EXPECT_LT(LargestDistance(made.points, points), 1e-8);
+    for (std::size_t i = 0; i < made.coefficients.size(); ++i)
+    {
+      ASSERT_NEAR(made.coefficients[i], subject.coefficients[i], 1e-8 * 1000);
+    }
+  }
+}
+} // namespace
+
+TEST(StatisticalModelEstimator, ReproducesTheTrainingSetAtFullRank)
+{
+  const auto subjects = MakePopulation(7);
+  ExpectReproduced(Estimate(subjects)->GetOutput(), subjects, AlignmentKind::Rigid);
+  const auto similar = Estimate(subjects, [](Estimator * e) { e->SetAlignment(AlignmentKind::Similarity); });
+  ExpectReproduced(similar->GetOutput(), subjects, AlignmentKind::Similarity);
+  EXPECT_TRUE(similar->GetOutput()->GetContent().similarity);
+  ExpectReproduced(
+    Estimate(subjects, [](Estimator * e) { e->VolumeWeightedOn(); })->GetOutput(), subjects, AlignmentKind::Rigid);
+}
+
+TEST(StatisticalModelEstimator, ModesAreOrthonormalAndScoresAreThoseOfTheSubjects)
+{
+  for (const bool weighted : { false, true })
+  {
+    const auto   estimator = Estimate(MakePopulation(9), [&](Estimator * e) { e->SetVolumeWeighted(weighted); });
+    const auto & content = estimator->GetOutput()->GetContent();
+    EXPECT_LT(OrthonormalityError(content.shape), 1e-12);
+    EXPECT_LT(OrthonormalityError(content.density), 1e-12);
+    // Scores: mean 0, variance 1, uncorrelated.
+    const Eigen::MatrixXd & b = content.shapeScores;
+    EXPECT_LT(b.colwise().mean().cwiseAbs().maxCoeff(), 1e-9);
+    const Eigen::MatrixXd covariance = b.transpose() * b / 8.0;
+    EXPECT_LT((covariance - Eigen::MatrixXd::Identity(b.cols(), b.cols())).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_NEAR(content.shape.variances.sum(), content.shape.totalVariance, 1e-9 * content.shape.totalVariance);
+  }
+}
+
+TEST(StatisticalModelEstimator, FindsAsManyDensityModesAsThereArePatterns)
+{
+  const auto estimator = Estimate(MakePopulation(9));
+  EXPECT_EQ(estimator->GetOutput()->GetContent().density.GetNumberOfModes(), 3);
+}
+
+TEST(StatisticalModelEstimator, SampleYieldsItsCoefficients)
+{
+  const auto   estimator = Estimate(MakePopulation(8), [](Estimator * e) { e->VolumeWeightedOn(); });
+  const auto * model = estimator->GetOutput();
+  const auto & content = model->GetContent();
+  const auto   shape = SampleCoefficients(content.shape.GetNumberOfModes(), 4);
+  const auto   density = SampleCoefficients(content.density.GetNumberOfModes(), 5);
+  const auto   mesh = model->Synthesize(shape, density);
+  EXPECT_LT((content.shape.Project(StackPoints(mesh.points)) - shape).norm(), 1e-8);
+  const Eigen::Map<const Eigen::VectorXd> c(mesh.coefficients.data(), content.density.GetDimension());
+  EXPECT_LT((content.density.Project(c) - density).norm(), 1e-8);
+}
+
+TEST(StatisticalModelEstimator, DoesNotDependOnPose)
+{
+  auto       subjects = MakePopulation(8);
+  const auto still = Estimate(subjects);
+  for (unsigned i = 0; i < subjects.size(); ++i)
+  {
+    Move(RandomPose(i), subjects[i].points);
+  }
+  const auto           moved = Estimate(subjects);
+  const auto &         a = still->GetOutput()->GetContent();
+  const auto &         b = moved->GetOutput()->GetContent();
+  std::vector<Vector3> mean = b.mean.points;
+  Move(FitAlignment(mean, a.mean.points, AlignmentKind::Rigid), mean);
+  EXPECT_LT(LargestDistance(mean, a.mean.points), 1e-8);
+  EXPECT_LT((a.shape.variances.head(6) - b.shape.variances.head(6)).norm(), 1e-8 * a.shape.variances[0]);
+  EXPECT_EQ(a.density.variances, b.density.variances);
+}
+
+TEST(StatisticalModelEstimator, DoesNotDependOnTheOrderOfSubjects)
+{
+  auto       subjects = MakePopulation(8);
+  const auto forward = Estimate(subjects);
+  std::reverse(subjects.begin(), subjects.end());
+  const auto   backward = Estimate(subjects);
+  const auto & a = forward->GetOutput()->GetContent();
+  const auto & b = backward->GetOutput()->GetContent();
+  EXPECT_LT(LargestDistance(a.mean.points, b.mean.points), 1e-8);
+  EXPECT_LT((a.shape.modes.leftCols(3) - b.shape.modes.leftCols(3)).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((a.density.modes - b.density.modes).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((a.shapeScores.leftCols(3) - b.shapeScores.leftCols(3).colwise().reverse()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(StatisticalModelEstimator, IsTheSameForAnyNumberOfThreads)
+{
+  const auto subjects = MakePopulation(8);
+  const auto before = itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads();
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
+  const auto one = Estimate(subjects);
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(4);
+  const auto four = Estimate(subjects);
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(before);
+  EXPECT_EQ(one->GetOutput()->GetContent().shape.modes, four->GetOutput()->GetContent().shape.modes);
+  EXPECT_EQ(one->GetOutput()->GetContent().density.modes, four->GetOutput()->GetContent().density.modes);
+}
+
+TEST(StatisticalModelEstimator, StreamedBlocksGiveTheSameModel)
+{
+  const auto   subjects = MakePopulation(40, 0);
+  const auto   whole = Estimate(subjects);
+  const auto   streamed = Estimate(subjects, [](Estimator * e) { e->SetBlockBytes(1); });
+  const auto & a = whole->GetOutput()->GetContent().density;
+  const auto & b = streamed->GetOutput()->GetContent().density;
+  ASSERT_EQ(a.GetNumberOfModes(), b.GetNumberOfModes());
+  EXPECT_LT((a.modes - b.modes).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(StatisticalModelEstimator, KeepsTheShareOfVarianceAskedFor)
+{
+  const auto   subjects = MakePopulation(10);
+  const auto   estimator = Estimate(subjects, [](Estimator * e) { e->SetVarianceProportion(0.9); });
+  const auto & shape = estimator->GetOutput()->GetContent().shape;
+  const auto   k = shape.GetNumberOfModes();
+  EXPECT_GE(shape.variances.sum(), 0.9 * shape.totalVariance);
+  EXPECT_LT(shape.variances.head(k - 1).sum(), 0.9 * shape.totalVariance);
+  const auto two = Estimate(subjects, [](Estimator * e) { e->SetMaximumModes(2); });
+  EXPECT_EQ(two->GetOutput()->GetContent().shape.GetNumberOfModes(), 2);
+}
+
+TEST(StatisticalModelEstimator, CombinedModelReproducesTheSubjects)
+{
+  const auto   estimator = Estimate(MakePopulation(7), [](Estimator * e) { e->CombinedOn(); });
+  const auto * model = estimator->GetOutput();
+  const auto & content = model->GetContent();
+  ASSERT_TRUE(model->IsCombined());
+  EXPECT_EQ(content.combined.variances.size(), 6);
+  for (Eigen::Index i = 0; i < content.shapeScores.rows(); ++i)
+  {
+    const Eigen::VectorXd joined =
+      model->JoinCombined(content.shapeScores.row(i).transpose(), content.densityScores.row(i).transpose());
+    Eigen::VectorXd shape, density;
+    model->SplitCombined(joined, shape, density);
+    EXPECT_LT((shape - content.shapeScores.row(i).transpose()).norm(), 1e-6);
+    EXPECT_LT((density - content.densityScores.row(i).transpose()).norm(), 1e-6);
+  }
+}
+
+TEST(StatisticalModelEstimator, NamesOutliersAndLeavesThemOut)
+{
+  auto subjects = MakePopulation(12);
+  for (Vector3 & x : subjects[4].points)
+  {
+    x[0] += 0.1 * x[2] * x[2];
+  }
+  for (double & c : subjects[7].coefficients)
+  {
+    c += 900;
+  }
+  const auto estimator = Estimate(subjects, [](Estimator * e) { e->RejectOutliersOn(); });
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+  {
+    EXPECT_EQ(estimator->GetSubjectDeviations()[i].outlier, i == 4 || i == 7) << i;
+  }
+  EXPECT_EQ(estimator->GetOutput()->GetContent().subjects.size(), 10u);
+}
+
+TEST(StatisticalModelEstimator, ShapesAloneMakeAModel)
+{
+  const auto estimator = Estimate(MakePopulation(5, -1));
+  EXPECT_FALSE(estimator->GetOutput()->HasDensity());
+  EXPECT_EQ(estimator->GetOutput()->GetContent().shape.GetNumberOfModes(), 4);
+}
+
+TEST(StatisticalModelEstimator, RefusesSetsThatAreNone)
+{
+  EXPECT_THROW(Estimate(MakePopulation(1)), itk::ExceptionObject);
+  auto subjects = MakePopulation(3);
+  std::swap(subjects[1].tetrahedra[0], subjects[1].tetrahedra[1]);
+  EXPECT_THROW(Estimate(subjects), itk::ExceptionObject);
+  EXPECT_THROW(Estimate({ MakeSubject(1, 1), MakeSubject(2, 2) }), itk::ExceptionObject);
+  EXPECT_THROW(Estimate({ MakeSubject(1, -1), MakeSubject(2, -1) }, [](Estimator * e) { e->CombinedOn(); }),
+               itk::ExceptionObject);
+  EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetVarianceProportion(0); }), itk::ExceptionObject);
+  EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetAlignment(AlignmentKind::Affine); }),
+               itk::ExceptionObject);
+}
+
+TEST(StatisticalModelEstimator, RunsOnlyWhenSomethingChanged)
+{
+  const auto estimator = Estimate(MakePopulation(3));
+  const auto before = estimator->GetOutput()->GetMTime();
+  estimator->Update();
+  EXPECT_EQ(estimator->GetOutput()->GetMTime(), before);
+  estimator->SetMaximumModes(1);
+  estimator->Update();
+  EXPECT_GT(estimator->GetOutput()->GetMTime(), before);
+}
