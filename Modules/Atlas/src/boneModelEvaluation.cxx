@@ -19,12 +19,12 @@ namespace
 PrincipalModes
 ModesWithout(const Eigen::MatrixXd & columns, Eigen::Index left)
 {
-  const VectorSource source{ columns.cols() - (left >= 0 ? 1 : 0),
-                             columns.rows(),
-                             [&columns, left](Eigen::Index i, double * y) {
-                               const Eigen::Indexcolumn = left >= 0 && i >= left ? i + 1 : i;
-                               Eigen::Map<Eigen::VectorXd>(y, columns.rows()) = columns.col(column);
-                             } };
+  VectorSource source;
+  source.count = columns.cols() - (left >= 0 ? 1 : 0);
+  source.dimension = columns.rows();
+  source.load = [&columns, left](Eigen::Index i, double * y) {
+    Eigen::Map<Eigen::VectorXd>(y, columns.rows()) = columns.col(left >= 0 && i >= left ? i + 1 : i);
+  };
   return AnalyzeVectors(source, Eigen::VectorXd(), GramParameters());
 }
 
