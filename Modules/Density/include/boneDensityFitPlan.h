@@ -34,8 +34,12 @@ public:
     std::vector<IdType>      tetrahedra;
   };
 
-  /** `tikhonov` is the kernels'. Throws as DensityFitKernel. */
-  DensityFitPlan(const MeshArrays & mesh, double voxelVolume, int degree, double tikhonov);
+  /** For the given tetrahedra of the mesh. `tikhonov` is the kernels'. Throws as DensityFitKernel. */
+  DensityFitPlan(const MeshArrays &          mesh,
+                 const std::vector<IdType> & tetrahedra,
+                 double                      voxelVolume,
+                 int                         degree,
+                 double                      tikhonov);
 
   const std::vector<Batch> &
   GetBatches() const

@@ -9,10 +9,14 @@
 
 namespace bone
 {
-DensityFitPlan::DensityFitPlan(const MeshArrays & mesh, double voxelVolume, int degree, double tikhonov)
+DensityFitPlan::DensityFitPlan(const MeshArrays &          mesh,
+                               const std::vector<IdType> & tetrahedra,
+                               double                      voxelVolume,
+                               int                         degree,
+                               double                      tikhonov)
 {
   std::map<int, std::vector<IdType>> cellsOfLattice;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  for (const IdType t : tetrahedra)
   {
     const Id4 &  v = mesh.tetrahedra[t];
     const double volume =
@@ -20,7 +24,7 @@ DensityFitPlan::DensityFitPlan(const MeshArrays & mesh, double voxelVolume, int 
     const double points =
       std::max(PointsPerCoefficient * BernsteinCount(degree), PointsPerVoxel * volume / voxelVolume);
     const int lattice = DensityFitKernel::LatticeWithPoints(degree, points, LargestLattice);
-    cellsOfLattice[lattice].push_back(static_cast<IdType>(t));
+    cellsOfLattice[lattice].push_back(t);
   }
   for (const auto & [lattice, cells] : cellsOfLattice)
   {

@@ -1,0 +1,492 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneFitDensity.h"
+
+#include "boneCellVoxels.h"
+#include "boneDensityFitPlan.h"
+#include "bonePenalizedFit.h"
+#include "boneTriangleTree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace bone
+{
+namespace
+{
+/** What holds a fit of weighted samples: nothing to speak of up to degree 1, Tikhonov's term on control values above.
+ */
+std::vector<double>
+SamplePenalties(int degree, double tikhonov)
+{
+  std::vector<double> penalties(degree + 1, 1e-9);
+  for (int k = 2; k <= degree; ++k)
+  {
+    penalties[k] += std::max(tikhonov, 1e-6) / BernsteinDamping(degree, k);
+  }
+  return penalties;
+}
+
+/** What holds the change that voxels make to a fit of samples: its mean square, and that of its control values. */
+std::vector<double>
+VoxelPenalties(int degree, double tikhonov, double voxelWeight)
+{
+  std::vector<double> penalties(degree + 1, 1.0);
+  for (int k = 0; k <= degree; ++k)
+  {
+    penalties[k] = (1 + tikhonov / BernsteinDamping(degree, k)) / (voxelWeight > 0 ? voxelWeight : 1.0);
+  }
+  return penalties;
+}
+
+/** What all tetrahedra of one degree share. */
+struct Pass
+{
+  Pass(const MeshArrays & mesh, const std::vector<IdType> & cells, double voxel, int n, const DensityFitSettings & s)
+    : degree(n)
+    , count(BernsteinCount(n))
+    , plan(mesh, cells, voxel, n, s.tikhonov)
+    , sampleFit(n, SamplePenalties(n, s.tikhonov))
+    , voxelFit(n, VoxelPenalties(n, s.tikhonov, s.voxelWeight))
+  {}
+
+  int            degree;
+  std::size_t    count; // coefficients
+  DensityFitPlan plan;
+  PenalizedFit   sampleFit;
+  PenalizedFit   voxelFit;
+};
+
+/** What is known of one tetrahedron while it is fitted. */
+struct CellData
+{
+  Eigen::Matrix<double, 3, 4> vertices; // index coordinates
+  double                      volume;   // in voxels
+  std::vector<Barycentric>    places;   // of its voxels
+  std::vector<double>         values;
+  std::vector<double>         weights; // of its voxels; empty: all 1
+  double                      low, high;
+};
+
+/** One batch of tetrahedra. */
+struct Batch
+{
+  explicit Batch(const DensityFitPlan::Batch & b, std::size_t count)
+    : kernel(*b.kernel)
+    , tetrahedra(b.tetrahedra)
+    , cells(b.tetrahedra.size())
+    , samples(kernel.SamplePoints().size(), cells.size())
+    , fitted(count, cells.size())
+    , change(Eigen::MatrixXd::Zero(count, cells.size()))
+  {}
+
+  const DensityFitKernel &    kernel;
+  const std::vector<IdType> & tetrahedra;
+  std::vector<CellData>       cells;
+  Eigen::MatrixXd             samples; // values, a column each tetrahedron
+  Eigen::MatrixXd             fitted;  // Bernstein coefficients
+  Eigen::MatrixXd             change;  // orthonormal coefficients
+  DensityFitReport            report;
+};
+
+class Fitter
+{
+public:
+  Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitSettings & settings);
+
+  DensityFitReport
+  Run(const DensityLoop & loop);
+
+private:
+  void
+  FitBatch(const Pass & pass, Batch & batch);
+  void
+  Sample(Batch & batch, std::size_t c) const;
+  void
+  FindVoxels(Batch & batch, std::size_t c, std::vector<CellVoxel> & found) const;
+  void
+  WeighSamples(const Pass & pass, Batch & batch, std::size_t c) const;
+  void
+  AddVoxels(const Pass & pass, Batch & batch, std::size_t c) const;
+  double
+  SquaredError(const Pass & pass, const Batch & batch, std::size_t c) const;
+  void
+  Finish(const Pass & pass, Batch & batch);
+  bool
+  MoveInward(Vector3 & index) const;
+  void
+  Summarize(DensityFitReport & report) const;
+
+  MeshArrays &               m_Mesh;
+  const DensityFitImage &    m_Image;
+  const DensityFitSettings & m_Settings;
+  Eigen::Matrix3d            m_ToIndex;
+  TriangleTree               m_Boundary;  // empty without a margin
+  std::vector<float>         m_Overshoot; // of each tetrahedron
+  std::vector<char>          m_Open;      // of each tetrahedron: its error is above the bound
+};
+
+Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitSettings & settings)
+  : m_Mesh(mesh)
+  , m_Image(image)
+  , m_Settings(settings)
+  , m_ToIndex(image.grid.axes.inverse())
+  , m_Overshoot(mesh.tetrahedra.size(), 0.0F)
+  , m_Open(mesh.tetrahedra.size(), 1)
+{
+  if (settings.surfaceMargin > 0)
+  {
+    if (mesh.neighbors.empty())
+    {
+      mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+    }
+    std::vector<TriangleTree::Triangle> faces;
+    for (const auto & face : BoundaryFaces(mesh))
+    {
+      faces.push_back({ { mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] } });
+    }
+    m_Boundary = TriangleTree(std::move(faces));
+  }
+}
+
+/** Moves a place nearer than the margin to the surface inward to that depth, unless that brings it nearer to another
+ * part of the surface. Returns whether it was nearer. */
+bool
+Fitter::MoveInward(Vector3 & index) const
+{
+  const Vector3 x = m_Image.grid.origin + m_Image.grid.axes * index;
+  const auto    nearest = m_Boundary.FindNearest(x);
+  const double  depth = std::sqrt(nearest.squaredDistance);
+  if (depth >= m_Settings.surfaceMargin)
+  {
+    return false;
+  }
+  if (depth > 0)
+  {
+    const Vector3 moved = nearest.point + (x - nearest.point) * (m_Settings.surfaceMargin / depth);
+    if (m_Boundary.FindNearest(moved).squaredDistance > nearest.squaredDistance)
+    {
+      index = m_ToIndex * (moved - m_Image.grid.origin);
+    }
+  }
+  return true;
+}
+
+void
+Fitter::Sample(Batch & batch, std::size_t c) const
+{
+  CellData &  cell = batch.cells[c];
+  const Id4 & v = m_Mesh.tetrahedra[batch.tetrahedra[c]];
+  for (int i = 0; i < 4; ++i)
+  {
+    cell.vertices.col(i) = m_ToIndex * (m_Mesh.points[v[i]] - m_Image.grid.origin);
+  }
+  cell.volume = std::abs((cell.vertices.rightCols<3>().colwise() - cell.vertices.col(0)).determinant()) / 6;
+  const auto &         pattern = batch.kernel.SamplePoints();
+  std::vector<Vector3> places(pattern.size());
+  const auto &         size = m_Image.grid.size;
+  const Vector3        last(size[0] - 0.5, size[1] - 0.5, size[2] - 0.5);
+  for (std::size_t s = 0; s < pattern.size(); ++s)
+  {
+    places[s] = cell.vertices * pattern[s];
+    if (!m_Boundary.IsEmpty())
+    {
+      this->MoveInward(places[s]);
+    }
+    batch.report.outside += (places[s].array() < -0.5).any() || (places[s].array() > last.array()).any() ? 1 : 0;
+  }
+  batch.report.samples += places.size();
+  m_Image.interpolated(places.data(), places.size(), batch.samples.col(c).data());
+  cell.low = batch.samples.col(c).minCoeff();
+  cell.high = batch.samples.col(c).maxCoeff();
+}
+
+void
+Fitter::FindVoxels(Batch & batch, std::size_t c, std::vector<CellVoxel> & found) const
+{
+  CellData & cell = batch.cells[c];
+  FindCellVoxels(cell.vertices, m_Image.grid.size, found);
+  std::vector<Vector3> indices;
+  for (const CellVoxel & voxel : found)
+  {
+    const auto & [i, j, k] = voxel.index;
+    Vector3 index(i, j, k);
+    if ((m_Settings.holdOut && IsHeldOut(i, j, k)) || (!m_Boundary.IsEmpty() && this->MoveInward(index)))
+    {
+      continue;
+    }
+    indices.push_back(index);
+    cell.places.push_back(voxel.mu);
+  }
+  cell.values.resize(indices.size());
+  m_Image.voxels(indices.data(), indices.size(), cell.values.data());
+  if (m_Image.weights)
+  {
+    cell.weights.resize(indices.size());
+    m_Image.weights(indices.data(), indices.size(), cell.weights.data());
+  }
+  for (const double value : cell.values)
+  {
+    cell.low = std::min(cell.low, value);
+    cell.high = std::max(cell.high, value);
+  }
+  batch.report.voxels += indices.size();
+}
+
+/** Replaces the fit of a tetrahedron whose samples do not all weigh the same. */
+void
+Fitter::WeighSamples(const Pass & pass, Batch & batch, std::size_t c) const
+{
+  CellData &           cell = batch.cells[c];
+  const auto &         pattern = batch.kernel.SamplePoints();
+  std::vector<Vector3> places(pattern.size());
+  Eigen::VectorXd      weights(pattern.size());
+  std::transform(pattern.begin(), pattern.end(), places.begin(), [&cell](const Barycentric & mu) -> Vector3 {
+    return cell.vertices * mu;
+  });
+  m_Image.weights(places.data(), places.size(), weights.data());
+  const double total = weights.sum();
+  if (!(total > 0))
+  {
+    cell.weights.clear();
+    ++batch.report.unsupported;
+    return;
+  }
+  if (weights.maxCoeff() == weights.minCoeff())
+  {
+    return;
+  }
+  const double          mean = weights.dot(batch.samples.col(c)) / total;
+  const Eigen::VectorXd rest = batch.samples.col(c).array() - mean;
+  Eigen::VectorXd       orthonormal(pass.count);
+  pass.sampleFit.Solve(pattern.size(), pattern.data(), rest.data(), weights.data(), total, orthonormal.data());
+  batch.fitted.col(c) = (OrthonormalToBernstein(pass.degree) * orthonormal).array() + mean;
+}
+
+void
+Fitter::AddVoxels(const Pass & pass, Batch & batch, std::size_t c) const
+{
+  const CellData & cell = batch.cells[c];
+  const double     total = cell.weights.empty() ? static_cast<double>(cell.values.size())
+                                                : std::accumulate(cell.weights.begin(), cell.weights.end(), 0.0);
+  if (!(total > 0))
+  {
+    return;
+  }
+  std::vector<double> rest(cell.values.size());
+  for (std::size_t v = 0; v < rest.size(); ++v)
+  {
+    rest[v] = cell.values[v] - BernsteinValue(pass.degree, batch.fitted.col(c).data(), cell.places[v]);
+  }
+  pass.voxelFit.Solve(rest.size(),
+                      cell.places.data(),
+                      rest.data(),
+                      cell.weights.empty() ? nullptr : cell.weights.data(),
+                      std::max(total, cell.volume),
+                      batch.change.col(c).data());
+}
+
+/** Mean square over voxels and samples, which stand for as much as their weights in the fit. */
+double
+Fitter::SquaredError(const Pass & pass, const Batch & batch, std::size_t c) const
+{
+  const CellData & cell = batch.cells[c];
+  const double *   coefficients = batch.fitted.col(c).data();
+  const auto &     pattern = batch.kernel.SamplePoints();
+  double           ofSamples = 0, ofVoxels = 0;
+  for (std::size_t s = 0; s < pattern.size(); ++s)
+  {
+    const double rest = BernsteinValue(pass.degree, coefficients, pattern[s]) - batch.samples(s, c);
+    ofSamples += rest * rest / static_cast<double>(pattern.size());
+  }
+  for (std::size_t v = 0; v < cell.values.size(); ++v)
+  {
+    const double rest = BernsteinValue(pass.degree, coefficients, cell.places[v]) - cell.values[v];
+    ofVoxels += rest * rest;
+  }
+  const double share = m_Settings.voxelWeight / std::max(cell.volume, static_cast<double>(cell.values.size()));
+  return (ofSamples + share * ofVoxels) / (1 + share * static_cast<double>(cell.values.size()));
+}
+
+void
+Fitter::Finish(const Pass & pass, Batch & batch)
+{
+  const std::size_t row = BernsteinCount(m_Mesh.maximumDegree);
+  for (std::size_t c = 0; c < batch.cells.size(); ++c)
+  {
+    const IdType     t = batch.tetrahedra[c];
+    const CellData & cell = batch.cells[c];
+    const double     range = cell.high - cell.low;
+    double *         fitted = batch.fitted.col(c).data();
+    const auto [least, largest] = std::minmax_element(fitted, fitted + pass.count);
+    const double beyond = std::max({ *largest - cell.high, cell.low - *least, 0.0 });
+    m_Overshoot[t] = range > 0 ? static_cast<float>(beyond / range) : 0.0F;
+    if (beyond > m_Settings.overshootLimit * range)
+    {
+      LimitControlValues(pass.degree, cell.low, cell.high, m_Settings.overshootLimit * range, fitted);
+      ++batch.report.limited;
+    }
+    batch.report.sparse += cell.values.size() < pass.count ? 1 : 0;
+    if (m_Settings.maximumError > 0)
+    {
+      m_Open[t] = this->SquaredError(pass, batch, c) > m_Settings.maximumError * m_Settings.maximumError ? 1 : 0;
+    }
+    m_Mesh.degree[t] = pass.degree;
+    std::copy_n(fitted, pass.count, &m_Mesh.coefficients[t * row]);
+  }
+}
+
+void
+Fitter::FitBatch(const Pass & pass, Batch & batch)
+{
+  std::vector<CellVoxel> found;
+  for (std::size_t c = 0; c < batch.cells.size(); ++c)
+  {
+    this->Sample(batch, c);
+  }
+  batch.report.finite = batch.samples.allFinite();
+  if (!batch.report.finite)
+  {
+    return;
+  }
+  batch.kernel.FitMany(batch.cells.size(), batch.samples.data(), batch.fitted.data());
+  for (std::size_t c = 0; c < batch.cells.size(); ++c)
+  {
+    this->FindVoxels(batch, c, found);
+    if (m_Image.weights)
+    {
+      this->WeighSamples(pass, batch, c);
+    }
+    if (m_Settings.voxelWeight > 0)
+    {
+      this->AddVoxels(pass, batch, c);
+    }
+  }
+  batch.fitted.noalias() += OrthonormalToBernstein(pass.degree) * batch.change;
+  this->Finish(pass, batch);
+}
+
+void
+Fitter::Summarize(DensityFitReport & report) const
+{
+  std::vector<float> overshoot = m_Overshoot;
+  const auto         at = [&overshoot](double share) {
+    const auto place = overshoot.begin() + static_cast<std::ptrdiff_t>(share * (overshoot.size() - 1));
+    std::nth_element(overshoot.begin(), place, overshoot.end());
+    return static_cast<double>(*place);
+  };
+  report.overshootMedian = at(0.5);
+  report.overshoot90 = at(0.9);
+  report.overshootMaximum = at(1.0);
+}
+
+DensityFitReport
+Fitter::Run(const DensityLoop & loop)
+{
+  m_Mesh.maximumDegree = m_Settings.degree;
+  m_Mesh.degree.assign(m_Mesh.tetrahedra.size(), m_Settings.degree);
+  m_Mesh.coefficients.assign(m_Mesh.tetrahedra.size() * BernsteinCount(m_Settings.degree), 0.0);
+  const double voxelVolume = m_Image.grid.VoxelVolume();
+
+  DensityFitReport report;
+  for (int degree = m_Settings.maximumError > 0 ? 0 : m_Settings.degree; degree <= m_Settings.degree; ++degree)
+  {
+    std::vector<IdType> cells;
+    for (std::size_t t = 0; t < m_Open.size(); ++t)
+    {
+      if (m_Open[t] != 0)
+      {
+        cells.push_back(static_cast<IdType>(t));
+      }
+    }
+    const Pass                    pass(m_Mesh, cells, voxelVolume, degree, m_Settings);
+    std::vector<DensityFitReport> reports(pass.plan.GetBatches().size());
+    loop(reports.size(), [&](std::size_t b) {
+      Batch batch(pass.plan.GetBatches()[b], pass.count);
+      this->FitBatch(pass, batch);
+      reports[b] = batch.report;
+    });
+    for (const DensityFitReport & r : reports)
+    {
+      report.samples += r.samples;
+      report.outside += r.outside;
+      report.finite = report.finite && r.finite;
+      report.voxels += r.voxels;
+      report.sparse += r.sparse;
+      report.unsupported += r.unsupported;
+      report.limited += r.limited;
+    }
+    if (!report.finite)
+    {
+      break;
+    }
+  }
+  this->Summarize(report);
+  return report;
+}
+
+void
+ClearUnused(MeshArrays & mesh)
+{
+  const int largest = *std::max_element(mesh.degree.begin(), mesh.degree.end());
+  if (largest == mesh.maximumDegree)
+  {
+    return;
+  }
+  const std::size_t from = BernsteinCount(mesh.maximumDegree), to = BernsteinCount(largest);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    std::copy_n(&mesh.coefficients[t * from], to, &mesh.coefficients[t * to]);
+  }
+  mesh.coefficients.resize(mesh.tetrahedra.size() * to);
+  mesh.maximumDegree = largest;
+}
+} // namespace
+
+DensityFitReport
+FitDensity(MeshArrays &               mesh,
+           const DensityFitImage &    image,
+           const DensityFitSettings & settings,
+           const DensityLoop &        loop)
+{
+  const DensityFitReport report = Fitter(mesh, image, settings).Run(loop);
+  ClearUnused(mesh);
+  return report;
+}
+
+bool
+LimitControlValues(int degree, double low, double high, double margin, double * coefficients)
+{
+  const Eigen::Index          count = BernsteinCount(degree);
+  Eigen::Map<Eigen::VectorXd> c(coefficients, count);
+  const double                least = low - margin, largest = high + margin;
+  if (c.minCoeff() >= least && c.maxCoeff() <= largest)
+  {
+    return false;
+  }
+  const Eigen::VectorXd orthonormal = BernsteinToOrthonormal(degree) * c;
+  for (int k = degree - 1; k >= 0; --k)
+  {
+    const Eigen::Index    kept = BernsteinCount(k);
+    const Eigen::VectorXd lower = OrthonormalToBernstein(degree).leftCols(kept) * orthonormal.head(kept);
+    const bool            inside = lower.minCoeff() >= least && lower.maxCoeff() <= largest;
+    if (!inside && k > 0)
+    {
+      c = lower;
+      continue;
+    }
+    double share = inside ? 1.0 : 0.0; // of the part of degree k + 1 that may stay
+    for (Eigen::Index i = 0; inside && i < count; ++i)
+    {
+      const double step = c[i] - lower[i];
+      const double room = step > 0 ? largest - lower[i] : least - lower[i];
+      share = std::abs(step) > std::abs(room) ? std::min(share, room / step) : share;
+    }
+    c = lower + share * (c - lower);
+    break;
+  }
+  return true;
+}
+} // namespace bone
