@@ -229,10 +229,15 @@ Run(int argc, char * argv[])
   bone.grid = MakeVoxelGrid(*bone.ct, bone.ct->GetBufferedRegion());
   const auto mesh = ReadDensityMesh(argv[1]);
   bone.region = RegionsOfVoxels(mesh->GetArrays(), bone.grid);
-  double      sum = 0;
-  std::size_t count = 0;
+  double      sum = 0, inMesh = 0;
+  std::size_t count = 0, countInMesh = 0;
   for (std::size_t voxel = 0; voxel < bone.region.size(); ++voxel)
   {
+    if (bone.region[voxel] >= 0)
+    {
+      inMesh += bone.ct->GetBufferPointer()[voxel];
+      ++countInMesh;
+    }
     if (bone.Has(voxel))
     {
       sum += bone.ct->GetBufferPointer()[voxel];
@@ -246,6 +251,8 @@ Run(int argc, char * argv[])
     Json entry = Measure(mesh, bone, options, std::stoi(degree));
     entry["labelMass"] = sum * bone.grid.VoxelVolume();
     entry["labelVoxels"] = count;
+    entry["meshVoxelMass"] = inMesh * bone.grid.VoxelVolume();
+    entry["meshVoxels"] = countInMesh;
     entries.push_back(entry);
   }
   std::cout << entries.dump(1) << '\n';

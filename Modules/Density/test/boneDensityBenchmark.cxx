@@ -63,6 +63,7 @@ BENCHMARK(Fit)
   ->ArgsProduct({ { 0, 1, 3, 6, 8 }, { 0 } })
   ->ArgsProduct({ { 1, 3 }, { 1 } })
   ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
   ->UseRealTime();
 
 void
@@ -79,7 +80,7 @@ Sample(benchmark::State & state)
     filter->Update();
   }
 }
-BENCHMARK(Sample)->ArgName("degree")->Arg(0)->Arg(3)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Sample)->ArgName("degree")->Arg(0)->Arg(3)->Arg(8)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void
 Locate(benchmark::State & state)
