@@ -29,6 +29,12 @@ AddSmoothCommand(CLI::App & app, Action & action);
 void
 AddFitCommand(CLI::App & app, Action & action);
 void
+AddCalibrateCommand(CLI::App & app, Action & action);
+void
+AddVoxelsCommand(CLI::App & app, Action & action);
+void
+AddProfileCommand(CLI::App & app, Action & action);
+void
 AddSimplifyCommand(CLI::App & app, Action & action);
 void
 AddBuildCommand(CLI::App & app, Action & action);

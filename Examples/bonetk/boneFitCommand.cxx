@@ -4,35 +4,146 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 
-#include "boneBernstein.h"
+#include "boneAtomicFile.h"
+#include "boneDensityCalibration.h"
+#include "boneDensityEvaluation.h"
 #include "boneDensityFitFilter.h"
 #include "boneMeshIO.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
 
 namespace bone
 {
 namespace
 {
+using Fit = DensityFitFilter<CTImage>;
+using Json = nlohmann::ordered_json;
+
 struct Options
 {
   std::string ct;
   std::string mesh;
   int         degree{ 3 };
   bool        continuous{ false };
+  std::string interpolator{ "linear" };
+  std::string weights;
+  double      voxelWeight{ 2.0 };
+  double      tikhonov{ 1e-4 };
+  double      overshoot{ 4.0 };
+  double      surfaceMargin{ 0.0 };
+  double      maximumError{ 0.0 };
+  std::string quantity{ "hu" };
+  std::string report;
   std::string output;
 };
+
+/** Error at voxel centres of the mesh; with `heldOut` at those that IsHeldOut() alone. */
+Json
+ErrorAtVoxels(const MeshArrays & mesh, const CTImage & ct, bool heldOut)
+{
+  const VoxelGrid   grid = MakeVoxelGrid(ct, ct.GetBufferedRegion());
+  const std::size_t row = grid.size[0], slice = row * grid.size[1];
+  const float *     values = ct.GetBufferPointer();
+  const auto        error = CompareDensity(mesh, grid, [&](std::size_t v, double & value) {
+    value = values[v];
+    const auto i = static_cast<int>(v % row), j = static_cast<int>(v % slice / row), k = static_cast<int>(v / slice);
+    return !heldOut || IsHeldOut(i, j, k);
+  });
+  return { { "voxels", error.voxels },
+           { "meanAbsolute", error.meanAbsolute },
+           { "rootMeanSquare", error.rootMeanSquare },
+           { "bias", error.bias },
+           { "percentOfRange", error.meanAbsolutePercent } };
+}
+
+Json
+DescribeFit(Fit & fit, const CTImage & ct)
+{
+  const MeshArrays         mesh = fit.GetOutput()->GetArrays();
+  const DensityFitReport & found = fit.GetReport();
+  Json                     report;
+  report["quantity"] = DensityQuantityName(mesh.quantity);
+  report["tetrahedra"] = mesh.tetrahedra.size();
+  std::map<std::string, std::size_t> degrees;
+  for (const int degree : mesh.degree)
+  {
+    ++degrees[std::to_string(degree)];
+  }
+  report["tetrahedraByDegree"] = degrees;
+  report["coefficients"] = fit.GetNumberOfFreeCoefficients();
+  for (const RegionDensity & region : MeasureRegions(mesh))
+  {
+    report["regions"].push_back({ { "region", region.region },
+                                  { "tetrahedra", region.tetrahedra },
+                                  { "volume", region.volume },
+                                  { "mass", region.mass },
+                                  { "mean", region.mean },
+                                  { "standardDeviation", region.standardDeviation } });
+  }
+  report["tetrahedraWithFewerVoxelsThanCoefficients"] = found.sparse;
+  report["tetrahedraWithoutWeight"] = found.unsupported;
+  report["shareOfSamplesOutsideTheImage"] = fit.GetOutsideFraction();
+  report["overshoot"] = { { "median", found.overshootMedian },
+                          { "percentile90", found.overshoot90 },
+                          { "largest", found.overshootMaximum },
+                          { "tetrahedraLimited", found.limited } };
+  report["error"] = ErrorAtVoxels(mesh, ct, false);
+  auto blind = Fit::New();
+  blind->SetImage(&ct);
+  blind->SetMesh(fit.GetMesh());
+  blind->SetWeights(fit.GetWeights());
+  blind->SetDegree(fit.GetDegree());
+  blind->SetContinuous(fit.GetContinuous());
+  blind->SetInterpolator(fit.GetInterpolator());
+  blind->SetVoxelWeight(fit.GetVoxelWeight());
+  blind->SetTikhonov(fit.GetTikhonov());
+  blind->SetOvershootLimit(fit.GetOvershootLimit());
+  blind->SetSurfaceMargin(fit.GetSurfaceMargin());
+  blind->SetMaximumError(fit.GetMaximumError());
+  blind->HoldOutOn();
+  blind->Update();
+  report["heldOutError"] = ErrorAtVoxels(blind->GetOutput()->GetArrays(), ct, true);
+  return report;
+}
 
 void
 Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
-  auto fit = DensityFitFilter<CTImage, DensityMesh<double>>::New();
-  fit->SetImage(ReadCT(options.ct));
+  const auto ct = ReadCT(options.ct);
+  auto       fit = Fit::New();
+  fit->SetImage(ct);
   fit->SetMesh(ReadDensityMesh(options.mesh));
+  if (!options.weights.empty())
+  {
+    fit->SetWeights(ReadCT(options.weights));
+  }
   fit->SetDegree(options.degree);
   fit->SetContinuous(options.continuous);
+  fit->SetInterpolator(options.interpolator == "linear" ? DensityInterpolator::Linear
+                                                        : DensityInterpolator::CubicBSpline);
+  fit->SetVoxelWeight(options.voxelWeight);
+  fit->SetTikhonov(options.tikhonov);
+  fit->SetOvershootLimit(options.overshoot);
+  fit->SetSurfaceMargin(options.surfaceMargin);
+  fit->SetMaximumError(options.maximumError);
+  fit->SetQuantity(ParseDensityQuantity(options.quantity));
   session.Watch(fit, "density fit");
   fit->Update();
+  if (fit->GetReport().unsupported > 0)
+  {
+    session.Warn(std::to_string(fit->GetReport().unsupported) +
+                 " tetrahedra lie where all weights are 0; they were fitted as if there were no weights.");
+  }
   WriteDensityMesh(fit->GetOutput(), options.output);
+  if (!options.report.empty())
+  {
+    AtomicFile file(options.report);
+    file.Write(DescribeFit(*fit, *ct).dump(1) + "\n");
+    file.Commit();
+  }
 }
 } // namespace
 
@@ -46,7 +157,37 @@ AddFitCommand(CLI::App & app, Action & action)
   command->add_option("--degree", options->degree, "Degree of the polynomials, 0 to 8")
     ->required()
     ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
-  command->add_flag("--continuous", options->continuous, "One continuous density within each region");
+  auto * continuous =
+    command->add_flag("--continuous", options->continuous, "One continuous density within each region");
+  command
+    ->add_option("--max-error",
+                 options->maximumError,
+                 "Lowest degree, up to --degree, whose root mean square error in the tetrahedron is at most this")
+    ->check(Positive())
+    ->excludes(continuous);
+  command->add_option("--interpolator", options->interpolator, "Between voxels: linear (default) or bspline (cubic)")
+    ->check(CLI::IsMember({ "linear", "bspline" }).description(""));
+  command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
+  command
+    ->add_option(
+      "--voxel-weight", options->voxelWeight, "Weight of voxels' own values against the interpolated image; default 2")
+    ->check(NotNegative());
+  command->add_option("--tikhonov", options->tikhonov, "Weight of the pull to the degree below; default 1e-4")
+    ->check(NotNegative());
+  command
+    ->add_option("--overshoot-limit",
+                 options->overshoot,
+                 "How far control values may lie beyond a tetrahedron's data, in ranges of these; default 4")
+    ->check(NotNegative());
+  command
+    ->add_option("--surface-margin",
+                 options->surfaceMargin,
+                 "What lies nearer than this to the surface (mm) takes the value this deep; default 0")
+    ->check(NotNegative());
+  command
+    ->add_option("--quantity", options->quantity, "What the CT's values are: hu (default), k2hpo4, ha, ash, apparent")
+    ->check(CLI::IsMember({ "hu", "k2hpo4", "ha", "ash", "apparent" }).description(""));
+  command->add_option("--report", options->report, "Figures of the fit, with the error at held-out voxels (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }

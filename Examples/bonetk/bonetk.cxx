@@ -105,6 +105,9 @@ main(int argc, char ** argv)
   bone::AddMeshCommand(app, action);
   bone::AddSmoothCommand(app, action);
   bone::AddFitCommand(app, action);
+  bone::AddCalibrateCommand(app, action);
+  bone::AddVoxelsCommand(app, action);
+  bone::AddProfileCommand(app, action);
   bone::AddSimplifyCommand(app, action);
   bone::AddBuildCommand(app, action);
   bone::AddDrrCommand(app, action);

@@ -19,6 +19,26 @@ DensityAt(const MeshArrays & mesh, const CellLocation & place);
 Vector3
 DensityGradientAt(const MeshArrays & mesh, const CellLocation & place);
 
+/** One place of a profile. */
+struct DensityProfilePoint
+{
+  Vector3 point{ Vector3::Zero() };    ///< mm
+  double  distance{ 0.0 };             ///< mm from the profile's start
+  IdType  cell{ -1 };                  ///< -1: outside the body
+  double  value{ 0.0 };                ///< density units; NaN outside
+  Vector3 gradient{ Vector3::Zero() }; ///< density units per mm; NaN outside
+};
+
+/** Density along the segment from `from` to `to`, at `count` >= 2 evenly spaced places with both ends. Each place is
+ * searched for from the tetrahedron of the one before. The locator must be of the same mesh. Throws
+ * std::invalid_argument where the mesh holds no density or count is below 2. */
+std::vector<DensityProfilePoint>
+DensityProfile(const MeshArrays &   mesh,
+               const TetraLocator & locator,
+               const Vector3 &      from,
+               const Vector3 &      to,
+               std::size_t          count);
+
 /** Density of one region in closed form. */
 struct RegionDensity
 {

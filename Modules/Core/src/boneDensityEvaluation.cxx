@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -100,6 +101,37 @@ DensityGradientAt(const MeshArrays & mesh, const CellLocation & place)
                            mesh.points[v[1]],
                            mesh.points[v[2]],
                            mesh.points[v[3]]);
+}
+
+std::vector<DensityProfilePoint>
+DensityProfile(const MeshArrays &   mesh,
+               const TetraLocator & locator,
+               const Vector3 &      from,
+               const Vector3 &      to,
+               std::size_t          count)
+{
+  if (!mesh.HasDensity())
+  {
+    throw std::invalid_argument("The mesh holds no density: fit one first.");
+  }
+  if (count < 2)
+  {
+    throw std::invalid_argument("A profile needs two places or more.");
+  }
+  std::vector<DensityProfilePoint> profile(count);
+  CellLocation                     place;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double          share = static_cast<double>(i) / static_cast<double>(count - 1);
+    DensityProfilePoint & p = profile[i];
+    p.point = (1 - share) * from + share * to;
+    p.distance = share * (to - from).norm();
+    place = locator.Find(p.point, place.cell);
+    p.cell = place.cell;
+    p.value = place.Found() ? DensityAt(mesh, place) : std::numeric_limits<double>::quiet_NaN();
+    p.gradient = place.Found() ? DensityGradientAt(mesh, place) : Vector3::Constant(p.value);
+  }
+  return profile;
 }
 
 std::vector<RegionDensity>

@@ -144,7 +144,7 @@ public:
     return m_Report.samples > 0 ? static_cast<double>(m_Report.outside) / static_cast<double>(m_Report.samples) : 0.0;
   }
 
-  /** After an update: what the fit found. With MaximumError its counts are sums over the degrees that were tried. */
+  /** After an update: what the fit found. With MaximumError its samples are those of all degrees tried. */
   const DensityFitReport &
   GetReport() const
   {

@@ -59,6 +59,16 @@ struct Pass
   PenalizedFit   voxelFit;
 };
 
+/** What was found in one tetrahedron, at the degree it took. */
+struct Finding
+{
+  float overshoot{ 0.0F };
+  int   voxels{ 0 };
+  bool  sparse{ false };
+  bool  limited{ false };
+  bool  unsupported{ false };
+};
+
 /** What is known of one tetrahedron while it is fitted. */
 struct CellData
 {
@@ -68,6 +78,8 @@ struct CellData
   std::vector<double>         values;
   std::vector<double>         weights; // of its voxels; empty: all 1
   double                      low, high;
+  bool                        nearSurface{ false }; // nearer than the margin, in part
+  Finding                     found;
 };
 
 /** One batch of tetrahedra. */
@@ -123,9 +135,9 @@ private:
   const DensityFitImage &    m_Image;
   const DensityFitSettings & m_Settings;
   Eigen::Matrix3d            m_ToIndex;
-  TriangleTree               m_Boundary;  // empty without a margin
-  std::vector<float>         m_Overshoot; // of each tetrahedron
-  std::vector<char>          m_Open;      // of each tetrahedron: its error is above the bound
+  TriangleTree               m_Boundary; // empty without a margin
+  std::vector<Finding>       m_Findings; // of each tetrahedron
+  std::vector<char>          m_Open;     // of each tetrahedron: its error is above the bound
 };
 
 Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitSettings & settings)
@@ -133,7 +145,7 @@ Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFi
   , m_Image(image)
   , m_Settings(settings)
   , m_ToIndex(image.grid.axes.inverse())
-  , m_Overshoot(mesh.tetrahedra.size(), 0.0F)
+  , m_Findings(mesh.tetrahedra.size())
   , m_Open(mesh.tetrahedra.size(), 1)
 {
   if (settings.surfaceMargin > 0)
@@ -151,27 +163,34 @@ Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFi
   }
 }
 
-/** Moves a place nearer than the margin to the surface inward to that depth, unless that brings it nearer to another
- * part of the surface. Returns whether it was nearer. */
+/** Moves a place nearer than the margin to the surface inward to that depth, away from one face after another at edges
+ * and corners, but not where that brings it nearer to another part of the surface. Returns whether it was nearer. */
 bool
 Fitter::MoveInward(Vector3 & index) const
 {
-  const Vector3 x = m_Image.grid.origin + m_Image.grid.axes * index;
-  const auto    nearest = m_Boundary.FindNearest(x);
-  const double  depth = std::sqrt(nearest.squaredDistance);
-  if (depth >= m_Settings.surfaceMargin)
+  Vector3 x = m_Image.grid.origin + m_Image.grid.axes * index;
+  auto    nearest = m_Boundary.FindNearest(x);
+  bool    near = false;
+  for (int step = 0; step < 4; ++step)
   {
-    return false;
-  }
-  if (depth > 0)
-  {
-    const Vector3 moved = nearest.point + (x - nearest.point) * (m_Settings.surfaceMargin / depth);
-    if (m_Boundary.FindNearest(moved).squaredDistance > nearest.squaredDistance)
+    const double depth = std::sqrt(nearest.squaredDistance);
+    const bool   tooNear = depth < (1 - 1e-9) * m_Settings.surfaceMargin;
+    near = near || tooNear;
+    if (!tooNear || depth == 0)
     {
-      index = m_ToIndex * (moved - m_Image.grid.origin);
+      break;
     }
+    const Vector3 moved = nearest.point + (x - nearest.point) * (m_Settings.surfaceMargin / depth);
+    const auto    next = m_Boundary.FindNearest(moved);
+    if (next.squaredDistance <= nearest.squaredDistance)
+    {
+      break;
+    }
+    x = moved;
+    nearest = next;
   }
-  return true;
+  index = m_ToIndex * (x - m_Image.grid.origin);
+  return near;
 }
 
 void
@@ -184,6 +203,20 @@ Fitter::Sample(Batch & batch, std::size_t c) const
     cell.vertices.col(i) = m_ToIndex * (m_Mesh.points[v[i]] - m_Image.grid.origin);
   }
   cell.volume = std::abs((cell.vertices.rightCols<3>().colwise() - cell.vertices.col(0)).determinant()) / 6;
+  if (!m_Boundary.IsEmpty())
+  {
+    Vector3 middle = Vector3::Zero();
+    for (const IdType p : v)
+    {
+      middle += 0.25 * m_Mesh.points[p];
+    }
+    double radius = 0;
+    for (const IdType p : v)
+    {
+      radius = std::max(radius, (m_Mesh.points[p] - middle).norm());
+    }
+    cell.nearSurface = std::sqrt(m_Boundary.FindNearest(middle).squaredDistance) < radius + m_Settings.surfaceMargin;
+  }
   const auto &         pattern = batch.kernel.SamplePoints();
   std::vector<Vector3> places(pattern.size());
   const auto &         size = m_Image.grid.size;
@@ -191,7 +224,7 @@ Fitter::Sample(Batch & batch, std::size_t c) const
   for (std::size_t s = 0; s < pattern.size(); ++s)
   {
     places[s] = cell.vertices * pattern[s];
-    if (!m_Boundary.IsEmpty())
+    if (cell.nearSurface)
     {
       this->MoveInward(places[s]);
     }
@@ -213,7 +246,7 @@ Fitter::FindVoxels(Batch & batch, std::size_t c, std::vector<CellVoxel> & found)
   {
     const auto & [i, j, k] = voxel.index;
     Vector3 index(i, j, k);
-    if ((m_Settings.holdOut && IsHeldOut(i, j, k)) || (!m_Boundary.IsEmpty() && this->MoveInward(index)))
+    if ((m_Settings.holdOut && IsHeldOut(i, j, k)) || (cell.nearSurface && this->MoveInward(index)))
     {
       continue;
     }
@@ -232,7 +265,7 @@ Fitter::FindVoxels(Batch & batch, std::size_t c, std::vector<CellVoxel> & found)
     cell.low = std::min(cell.low, value);
     cell.high = std::max(cell.high, value);
   }
-  batch.report.voxels += indices.size();
+  cell.found.voxels = static_cast<int>(indices.size());
 }
 
 /** Replaces the fit of a tetrahedron whose samples do not all weigh the same. */
@@ -251,7 +284,7 @@ Fitter::WeighSamples(const Pass & pass, Batch & batch, std::size_t c) const
   if (!(total > 0))
   {
     cell.weights.clear();
-    ++batch.report.unsupported;
+    cell.found.unsupported = true;
     return;
   }
   if (weights.maxCoeff() == weights.minCoeff())
@@ -316,19 +349,20 @@ Fitter::Finish(const Pass & pass, Batch & batch)
   const std::size_t row = BernsteinCount(m_Mesh.maximumDegree);
   for (std::size_t c = 0; c < batch.cells.size(); ++c)
   {
-    const IdType     t = batch.tetrahedra[c];
-    const CellData & cell = batch.cells[c];
-    const double     range = cell.high - cell.low;
-    double *         fitted = batch.fitted.col(c).data();
+    const IdType t = batch.tetrahedra[c];
+    CellData &   cell = batch.cells[c];
+    const double range = cell.high - cell.low;
+    double *     fitted = batch.fitted.col(c).data();
     const auto [least, largest] = std::minmax_element(fitted, fitted + pass.count);
     const double beyond = std::max({ *largest - cell.high, cell.low - *least, 0.0 });
-    m_Overshoot[t] = range > 0 ? static_cast<float>(beyond / range) : 0.0F;
-    if (beyond > m_Settings.overshootLimit * range)
+    cell.found.overshoot = range > 0 ? static_cast<float>(beyond / range) : 0.0F;
+    cell.found.limited = beyond > m_Settings.overshootLimit * range;
+    cell.found.sparse = cell.values.size() < pass.count;
+    if (cell.found.limited)
     {
       LimitControlValues(pass.degree, cell.low, cell.high, m_Settings.overshootLimit * range, fitted);
-      ++batch.report.limited;
     }
-    batch.report.sparse += cell.values.size() < pass.count ? 1 : 0;
+    m_Findings[t] = cell.found;
     if (m_Settings.maximumError > 0)
     {
       m_Open[t] = this->SquaredError(pass, batch, c) > m_Settings.maximumError * m_Settings.maximumError ? 1 : 0;
@@ -371,9 +405,18 @@ Fitter::FitBatch(const Pass & pass, Batch & batch)
 void
 Fitter::Summarize(DensityFitReport & report) const
 {
-  std::vector<float> overshoot = m_Overshoot;
-  const auto         at = [&overshoot](double share) {
-    const auto place = overshoot.begin() + static_cast<std::ptrdiff_t>(share * (overshoot.size() - 1));
+  std::vector<float> overshoot;
+  for (const Finding & found : m_Findings)
+  {
+    overshoot.push_back(found.overshoot);
+    report.voxels += found.voxels;
+    report.sparse += found.sparse ? 1 : 0;
+    report.limited += found.limited ? 1 : 0;
+    report.unsupported += found.unsupported ? 1 : 0;
+  }
+  const auto at = [&overshoot](double share) {
+    const auto place =
+      overshoot.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(overshoot.size() - 1));
     std::nth_element(overshoot.begin(), place, overshoot.end());
     return static_cast<double>(*place);
   };
@@ -413,10 +456,6 @@ Fitter::Run(const DensityLoop & loop)
       report.samples += r.samples;
       report.outside += r.outside;
       report.finite = report.finite && r.finite;
-      report.voxels += r.voxels;
-      report.sparse += r.sparse;
-      report.unsupported += r.unsupported;
-      report.limited += r.limited;
     }
     if (!report.finite)
     {

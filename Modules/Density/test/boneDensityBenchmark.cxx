@@ -80,7 +80,14 @@ Sample(benchmark::State & state)
     filter->Update();
   }
 }
-BENCHMARK(Sample)->ArgName("degree")->Arg(0)->Arg(3)->Arg(8)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(Sample)
+  ->ArgName("degree")
+  ->Arg(0)
+  ->Arg(3)
+  ->Arg(8)
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
 
 void
 Locate(benchmark::State & state)

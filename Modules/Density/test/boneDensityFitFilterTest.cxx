@@ -4,11 +4,14 @@
 #include "boneDensityFitFilter.h"
 
 #include "boneBernstein.h"
+#include "boneDensityEvaluation.h"
 #include "boneDensityTestMeshes.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace
 {
@@ -273,6 +276,170 @@ ExpectRefusal(itk::ProcessObject & filter, const std::string & words)
   }
 }
 
+/** A step between two values along an oblique direction, which a polynomial cannot follow. */
+double
+Step(const Vector3 & x)
+{
+  return x[0] + 0.5 * x[1] + 0.3 * (x[2] - 30) > 7 ? 1000 : 100;
+}
+
+/** Root mean square of model less image at the voxels in the mesh. */
+double
+VoxelError(const MeshArrays & mesh, const test::DoubleImage & image, bool heldOut)
+{
+  const VoxelGrid grid = MakeVoxelGrid(image, image.GetBufferedRegion());
+  return CompareDensity(mesh,
+                        grid,
+                        [&](std::size_t v, double & value) {
+                          value = image.GetBufferPointer()[v];
+                          const auto i = static_cast<int>(v % grid.size[0]);
+                          const auto j = static_cast<int>(v / grid.size[0] % grid.size[1]);
+                          const auto k = static_cast<int>(v / grid.size[0] / grid.size[1]);
+                          return !heldOut || IsHeldOut(i, j, k);
+                        })
+    .rootMeanSquare;
+}
+
+TEST(DensityFitFilter, VoxelsOwnValuesBringTheModelNearerToThem)
+{
+  const auto       image = test::ObliqueImage<test::DoubleImage>(Step);
+  const MeshArrays mesh = Block();
+  double           before = 1e9;
+  for (double weight : { 0.0, 1.0, 4.0 })
+  {
+    auto filter = MakeFit(mesh, image.GetPointer(), 4);
+    filter->SetVoxelWeight(weight);
+    filter->Update();
+    const double error = VoxelError(filter->GetOutput()->GetArrays(), *image, false);
+    EXPECT_LT(error, 0.95 * before);
+    before = error;
+  }
+}
+
+TEST(DensityFitFilter, HeldOutVoxelsPlayNoPart)
+{
+  const auto       image = test::ObliqueImage<test::DoubleImage>(test::Smooth);
+  const auto       changed = test::ObliqueImage<test::DoubleImage>(test::Smooth);
+  const VoxelGrid  grid = MakeVoxelGrid(*image, image->GetBufferedRegion());
+  const MeshArrays mesh = Block();
+  for (std::size_t v = 0; v < grid.NumberOfVoxels(); ++v)
+  {
+    const auto i = static_cast<int>(v % grid.size[0]), j = static_cast<int>(v / grid.size[0] % grid.size[1]);
+    if (IsHeldOut(i, j, static_cast<int>(v / grid.size[0] / grid.size[1])))
+    {
+      changed->GetBufferPointer()[v] = 1e6;
+    }
+  }
+  auto filter = MakeFit(mesh, image.GetPointer(), 3);
+  filter->HoldOutOn();
+  filter->Update();
+  auto other = MakeFit(mesh, changed.GetPointer(), 3);
+  other->HoldOutOn();
+  other->Update();
+  EXPECT_EQ(filter->GetOutput()->GetCells().coefficients, other->GetOutput()->GetCells().coefficients);
+  EXPECT_LT(VoxelError(filter->GetOutput()->GetArrays(), *image, true), 30);
+}
+
+TEST(DensityFitFilter, ACubicSplineIsNearerToASmoothImageThanLinearInterpolation)
+{
+  const auto       image = test::ObliqueImage<test::DoubleImage>(test::Smooth);
+  const MeshArrays mesh = Block();
+  auto             filter = MakeFit(mesh, image.GetPointer(), 5);
+  filter->Update();
+  const double linear = VoxelError(filter->GetOutput()->GetArrays(), *image, false);
+  filter->SetInterpolator(DensityInterpolator::CubicBSpline);
+  filter->Update();
+  EXPECT_LT(VoxelError(filter->GetOutput()->GetArrays(), *image, false), 0.5 * linear);
+}
+
+TEST(DensityFitFilter, WhatHasNoWeightDoesNotCount)
+{
+  const auto isBroken = [](const Vector3 & x) { return (x - Vector3(9, -6, 31)).norm() < 1.5; };
+  const auto image =
+    test::ObliqueImage<test::DoubleImage>([&](const Vector3 & x) { return isBroken(x) ? 5000 : test::Linear(x); });
+  const auto weights = test::ObliqueImage<test::DoubleImage>(
+    [](const Vector3 & x) { return (x - Vector3(9, -6, 31)).norm() < 4 ? 0.0 : 1.0; });
+  const MeshArrays mesh = Block();
+  auto             filter = MakeFit(mesh, image.GetPointer(), 1);
+  filter->SetWeights(weights);
+  filter->Update();
+  EXPECT_EQ(filter->GetReport().unsupported, 0u);
+  ExpectLinear(*filter, mesh, 1, 1e-3);
+
+  const auto nothing = test::ObliqueImage<test::DoubleImage>([](const Vector3 &) { return 0.0; });
+  filter->SetWeights(nothing);
+  filter->Update();
+  EXPECT_EQ(filter->GetReport().unsupported, mesh.tetrahedra.size());
+  const auto negative = test::ObliqueImage<test::DoubleImage>([](const Vector3 &) { return -1.0; });
+  filter->SetWeights(negative);
+  ExpectRefusal(*filter, "'Weights'");
+}
+
+TEST(DensityFitFilter, ControlValuesStayWithinTheLimitAndTheMeanIsKept)
+{
+  const auto       image = test::ObliqueImage<test::DoubleImage>(Step);
+  const MeshArrays mesh = Block();
+  auto             filter = MakeFit(mesh, image.GetPointer(), 6);
+  filter->SetOvershootLimit(std::numeric_limits<double>::infinity());
+  filter->Update();
+  const std::vector<double> free = filter->GetOutput()->GetCells().coefficients;
+  EXPECT_EQ(filter->GetReport().limited, 0u);
+  EXPECT_GT(filter->GetReport().overshootMaximum, 1);
+  filter->SetOvershootLimit(0.5);
+  filter->Update();
+  EXPECT_GT(filter->GetReport().limited, 0u);
+  const std::vector<double> & limited = filter->GetOutput()->GetCells().coefficients;
+  const auto [least, largest] = std::minmax_element(limited.begin(), limited.end());
+  EXPECT_GE(*least, 100 - 0.5 * 900 - 1e-6);
+  EXPECT_LE(*largest, 1000 + 0.5 * 900 + 1e-6);
+  const int count = BernsteinCount(6);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    EXPECT_NEAR(BernsteinIntegral(6, &limited[t * count], 1.0), BernsteinIntegral(6, &free[t * count], 1.0), 1e-7);
+  }
+}
+
+TEST(DensityFitFilter, AdaptiveDegreeIsAsLowAsTheErrorAllows)
+{
+  // Linear on one side, bent on the other.
+  const auto image = test::ObliqueImage<test::DoubleImage>(
+    [](const Vector3 & x) { return test::Linear(x) + (x[0] > 10 ? 4 * (x[0] - 10) * (x[0] - 10) : 0.0); });
+  const MeshArrays mesh = Block();
+  auto             filter = MakeFit(mesh, image.GetPointer(), 4);
+  filter->SetMaximumError(2.0);
+  filter->Update();
+  const MeshArrays fitted = filter->GetOutput()->GetArrays();
+  EXPECT_GT(std::count(fitted.degree.begin(), fitted.degree.end(), 1), 100);
+  EXPECT_GT(std::count(fitted.degree.begin(), fitted.degree.end(), 2), 10);
+  EXPECT_LT(VoxelError(fitted, *image, false), 2.0);
+  EXPECT_EQ(fitted.maximumDegree, *std::max_element(fitted.degree.begin(), fitted.degree.end()));
+  EXPECT_LT(filter->GetNumberOfFreeCoefficients(), mesh.tetrahedra.size() * BernsteinCount(2));
+  filter->SetMaximumError(1e9);
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetCells().maximumDegree, 0);
+  filter->ContinuousOn();
+  ExpectRefusal(*filter, "one degree");
+}
+
+TEST(DensityFitFilter, AMarginKeepsTheDarkRimOut)
+{
+  // A block in an image that falls off half a millimetre inside its surface.
+  const MeshArrays mesh = Block();
+  const Vector3    upper = Lower + Vector3::Constant(20);
+  const auto       image = test::ObliqueImage<test::DoubleImage>([&](const Vector3 & x) {
+    const double depth = std::min((x - Lower).minCoeff(), (upper - x).minCoeff());
+    return depth > 1.0 ? 800.0 : 100.0;
+  });
+  auto             filter = MakeFit(mesh, image.GetPointer(), 2);
+  filter->Update();
+  const double mean = MeasureRegions(filter->GetOutput()->GetArrays())[0].mean;
+  filter->SetSurfaceMargin(3.0);
+  filter->Update();
+  const double kept = MeasureRegions(filter->GetOutput()->GetArrays())[0].mean;
+  EXPECT_LT(mean, 700);
+  EXPECT_NEAR(kept, 800, 1);
+}
+
 TEST(DensityFitFilter, RefusesWhatItCannotFit)
 {
   const auto image = test::ObliqueImage<test::DoubleImage>(test::Linear);
@@ -289,6 +456,12 @@ TEST(DensityFitFilter, RefusesWhatItCannotFit)
   auto damped = MakeFit(Block(), image.GetPointer(), 2);
   damped->SetTikhonov(std::nan(""));
   ExpectRefusal(*damped, "Tikhonov is nan");
+  auto heavy = MakeFit(Block(), image.GetPointer(), 2);
+  heavy->SetVoxelWeight(-1);
+  ExpectRefusal(*heavy, "VoxelWeight is -1");
+  heavy->SetVoxelWeight(1);
+  heavy->SetOvershootLimit(std::nan(""));
+  ExpectRefusal(*heavy, "OvershootLimit is nan");
   MeshArrays far = Block();
   for (Vector3 & p : far.points)
   {
