@@ -3,6 +3,9 @@
  *=========================================================================*/
 #include "boneBuildPipeline.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace bone
 {
 std::vector<std::string>
@@ -22,7 +25,8 @@ DescribeLosses(const TilingReport & report)
 
 BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
 {
-  m_Resample->SetInput(m_Snake->GetOutput());
+  m_Slices->SetInput(m_Snake->GetOutput());
+  m_Resample->SetInput(m_Slices->GetOutput());
   m_MedialAxis->SetInput(m_Resample->GetOutput());
   m_Tiling->SetInput(m_MedialAxis->GetOutput());
   m_Quality->SetInput(m_Tiling->GetOutput());
@@ -72,12 +76,13 @@ BuildPipeline::SetContourSpacing(double spacing)
 {
   m_Resample->SetMaximumSpacing(spacing);
   m_Resample->SetMinimumSpacing(spacing / 3.0);
+  m_Resample->SetTolerance(std::clamp(0.33 * std::pow(spacing / 8.0, 2.0), 0.05, 0.6));
 }
 
 std::vector<BuildPipeline::Stage>
 BuildPipeline::GetStages() const
 {
-  std::vector<Stage> stages = { { "contours", m_Snake },   { "resample", m_Resample }, { "medial axis", m_MedialAxis },
+  std::vector<Stage> stages = { { "contours", m_Snake },   { "slices", m_Slices }, { "resample", m_Resample }, { "medial axis", m_MedialAxis },
                                 { "tiling", m_Tiling },    { "quality", m_Quality },   { "fit", m_Fit },
                                 { "collapse", m_Collapse } };
   for (std::size_t level = 0; level < m_Radiographs.size(); ++level)

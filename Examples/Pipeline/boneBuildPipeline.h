@@ -8,6 +8,7 @@
 #include "boneImageIO.h"
 
 #include "boneContourResampleFilter.h"
+#include "boneContourSliceFilter.h"
 #include "boneContourTilingMeshSource.h"
 #include "boneDRRImageFilter.h"
 #include "boneDensityFitFilter.h"
@@ -29,7 +30,7 @@ DescribeLosses(const TilingReport & report);
 /** \class BuildPipeline
  * \brief The whole job as one lazy ITK pipeline: from a CT to radiographs of each level of its density model.
  *
- * CT, labels or contours -> snake contours -> resampled contours -> medial axes -> tiling -> mesh quality -> density
+ * CT, labels or contours -> snake contours -> slices kept -> resampled contours -> medial axes -> tiling -> mesh quality -> density
  * fit
  * -> collapse -> one radiograph a level. Parameters are set on the stages; an update runs the stages whose input or
  * parameters changed and those after them, and no others. */
@@ -38,6 +39,7 @@ class BuildPipeline
 public:
   using MeshType = DensityMesh<double>;
   using SnakeType = SnakeContourFilter<CTImage, ContourStack>;
+  using SlicesType = ContourSliceFilter<ContourStack>;
   using ResampleType = ContourResampleFilter<ContourStack>;
   using MedialAxisType = MedialAxisFilter<ContourStack>;
   using TilingType = ContourTilingMeshSource<ContourStack, MeshType>;
@@ -65,7 +67,8 @@ public:
   SetGeometry(const XRayGeometry * geometry);
   /** \} */
 
-  /** Spacing (mm) of the contours' samples on a slice; where they curve they are closer. */
+  /** Largest spacing (mm) of the contours' samples on a slice; where they curve they are closer: a third of it at least,
+   * and with a tolerance that goes with its square, so that the number of samples goes with its inverse. */
   void
   SetContourSpacing(double spacing);
 
@@ -75,6 +78,12 @@ public:
   GetSnake() const
   {
     return m_Snake;
+  }
+  /** Which slices are kept; all of the snake's by default. */
+  SlicesType *
+  GetSlices() const
+  {
+    return m_Slices;
   }
   ResampleType *
   GetResample() const
@@ -131,6 +140,7 @@ public:
 
 private:
   SnakeType::Pointer                         m_Snake{ SnakeType::New() };
+  SlicesType::Pointer                        m_Slices{ SlicesType::New() };
   ResampleType::Pointer                      m_Resample{ ResampleType::New() };
   MedialAxisType::Pointer                    m_MedialAxis{ MedialAxisType::New() };
   TilingType::Pointer                        m_Tiling{ TilingType::New() };

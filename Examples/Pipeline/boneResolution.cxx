@@ -31,23 +31,27 @@ EstimateSurface(const ContourStack & stack)
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra)
 {
-  constexpr double ratio = 0.6;
-  const double     product = 9.5 * surfaceArea / static_cast<double>(tetrahedra);
+  constexpr double ratio = 0.4;
+  const double     product = 17.0 * surfaceArea / static_cast<double>(tetrahedra);
   Resolution       resolution;
   resolution.sliceStep = std::max(sliceSpacing, std::sqrt(ratio * product));
   resolution.contourSpacing = product / resolution.sliceStep;
   return resolution;
 }
 
-namespace
-{
 void
-SetResolution(BuildPipeline & pipeline, const Resolution & resolution)
+SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search)
 {
-  pipeline.GetSnake()->SetSliceStep(resolution.sliceStep);
+  const double quarter = 0.25 * resolution.sliceStep;
+  pipeline.GetSnake()->SetSliceStep(!search.adaptive                ? resolution.sliceStep
+                                    : search.sliceSpacing < quarter ? quarter
+                                                                    : 0.0);
+  pipeline.GetSlices()->SetMeanSpacing(search.adaptive ? resolution.sliceStep : 0.0);
   pipeline.SetContourSpacing(resolution.contourSpacing);
 }
 
+namespace
+{
 /** The resolution to try next after one that gave `ratio` times the number asked for. */
 Resolution
 NextResolution(const Resolution & last, double ratio, const ResolutionSearch & search)
@@ -98,7 +102,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
   Resolution                resolution = start;
   for (int trial = 0; trial < maximumTrials; ++trial)
   {
-    SetResolution(pipeline, resolution);
+    SetResolution(pipeline, resolution, search);
     // A failure of the contours is one of the input.
     pipeline.GetSnake()->Update();
     try
@@ -133,7 +137,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
   {
     std::rethrow_exception(failure);
   }
-  SetResolution(pipeline, *best);
+  SetResolution(pipeline, *best, search);
   pipeline.GetTiling()->Update();
   return *best;
 }

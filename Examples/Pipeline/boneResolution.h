@@ -13,7 +13,7 @@ namespace bone
 /** How densely a bone is sampled. */
 struct Resolution
 {
-  double sliceStep{ 0.0 };      ///< mm
+  double sliceStep{ 0.0 };      ///< mm; where slices are adaptive, on average
   double contourSpacing{ 0.0 }; ///< mm
 };
 
@@ -21,10 +21,9 @@ struct Resolution
 double
 EstimateSurface(const ContourStack & stack);
 
-/** First guess for a number of tetrahedra. A tiled mesh has about 5.3 tetrahedra a contour point, and the inner layers
- * have about 0.8 times as many points as the outer one: with slices `s` and samples `h` apart, N = 9.5 A / (s h) for a
- * surface of area A, and s = 0.6 h keeps the cells well shaped. A step below the slices' own spacing becomes that
- * spacing, the samples then being further apart. */
+/** First guess for a number of tetrahedra: with slices `s` and samples at most `h` apart, N = 17 A / (s h) for a surface
+ * of area A (measured; curved and thin places have more samples), and s = 0.4 h spends them best. A step below the
+ * slices' own spacing becomes that spacing, the samples then being further apart. */
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra);
 
@@ -34,7 +33,13 @@ struct ResolutionSearch
   IdType tetrahedra{ 0 };
   double sliceSpacing{ 0.0 }; ///< of the image, mm; the slice step is not made smaller
   bool   sliceStepFixed{ false };
+  bool   adaptive{ true }; ///< slices where sections change, the step being their mean; false: evenly spaced
 };
+
+/** Sets the slices and the contours' spacing. With adaptive slices the contours are made on those of the image, or on
+ * slices a quarter of the step apart if these are finer, and then chosen from. */
+void
+SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search);
 
 /** Sets slice step and contour spacing of the pipeline, beginning with `start`, until its tiling has the number of
  * tetrahedra within 8 %, in at most six tilings, and leaves the best ones set and the tiling up to date. Far from the

@@ -33,6 +33,7 @@ struct Options
   std::vector<double> levels{ 0.2, 1.0 / 13.0 };
   double              sliceStep{ 0.0 };
   double              contourSpacing{ 0.0 };
+  bool                regularSlices{ false };
   int                 axis{ 2 };
 };
 
@@ -111,16 +112,17 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
   }
   pipeline.GetFit()->SetDegree(options.degree);
   pipeline.GetFit()->SetContinuous(options.continuous);
+  const ResolutionSearch search{
+    options.tetrahedra, sliceSpacing, options.sliceStep > 0.0, !options.regularSlices
+  };
   if (options.contourSpacing > 0.0)
   {
     resolution.contourSpacing = options.contourSpacing;
-    pipeline.GetSnake()->SetSliceStep(resolution.sliceStep);
-    pipeline.SetContourSpacing(resolution.contourSpacing);
+    SetResolution(pipeline, resolution, search);
     pipeline.GetTiling()->Update();
   }
   else
   {
-    const ResolutionSearch search{ options.tetrahedra, sliceSpacing, options.sliceStep > 0.0 };
     resolution = AdjustResolution(pipeline, resolution, search, [&](const Resolution & tried, IdType count) {
       std::ostringstream line;
       line << "slices " << tried.sliceStep << " mm, contour points at most " << tried.contourSpacing
@@ -203,7 +205,7 @@ Run(const Options & options, Session & session)
   report.degree = options.degree;
   report.continuous = options.continuous;
   report.askedTetrahedra = options.tetrahedra;
-  report.slices = pipeline.GetSnake()->GetOutput()->GetSlices().size();
+  report.slices = pipeline.GetSlices()->GetOutput()->GetSlices().size();
   report.tiling = pipeline.GetTiling()->GetReport();
   report.levels = evaluation.levels;
   report.warnings = session.GetWarnings();
@@ -231,8 +233,11 @@ AddBuildCommand(CLI::App & app, Action & action)
                  options->levels,
                  "Coarser levels: numbers of tetrahedra, or shares of the first level; default 0.2 0.0769")
     ->check(Positive());
-  command->add_option("--slice-step", options->sliceStep, "Distance of slices in mm; default: chosen for --tetrahedra")
+  command->add_option("--slice-step", options->sliceStep, "Mean distance of slices in mm; default: chosen for --tetrahedra")
     ->check(Positive());
+  command->add_flag("--regular-slices",
+                    options->regularSlices,
+                    "Slices evenly spaced, and not more of them where the sections change");
   command
     ->add_option("--contour-spacing",
                  options->contourSpacing,

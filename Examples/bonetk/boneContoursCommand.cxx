@@ -7,6 +7,7 @@
 #include "boneContourIO.h"
 #include "boneContourImage.h"
 #include "boneContourResampleFilter.h"
+#include "boneContourSliceFilter.h"
 #include "boneMedialAxisFilter.h"
 #include "boneSnakeContourFilter.h"
 
@@ -22,10 +23,12 @@ struct Options
   std::string ct;
   BoneOptions bone;
   double      sliceStep{ 0.0 };
+  double      meanStep{ 0.0 };
   double      spacing{ 4.0 };
   double      leastSpacing{ 0.0 };
   double      tolerance{ 0.2 };
   double      layerDistance{ 0.0 };
+  double      layerRatio{ 6.0 };
   double      samples{ 0.0 };
   double      tetrahedra{ 0.0 };
   int         axis{ 2 };
@@ -90,16 +93,21 @@ Run(const Options & options, Session & session)
   snake->SetRefineLabelOutline(options.refine);
   snake->SetKeepSmallPieces(options.keepSmall);
   auto resample = ContourResampleFilter<ContourStack>::New();
-  resample->SetInput(snake->GetOutput());
+  auto slices = ContourSliceFilter<ContourStack>::New();
+  slices->SetInput(snake->GetOutput());
+  slices->SetMeanSpacing(options.meanStep);
+  resample->SetInput(slices->GetOutput());
   resample->SetMaximumSpacing(options.spacing);
   resample->SetMinimumSpacing(options.leastSpacing > 0.0 ? options.leastSpacing : options.spacing / 3.0);
   resample->SetTolerance(options.tolerance);
   resample->SetMinimumLayerDistance(distance);
+  resample->SetThinLayerRatio(options.layerRatio);
   resample->SetTargetNumberOfSamples(static_cast<std::size_t>(std::llround(options.samples)));
   resample->SetTargetNumberOfTetrahedra(static_cast<std::size_t>(std::llround(options.tetrahedra)));
   auto axes = MedialAxisFilter<ContourStack>::New();
   axes->SetInput(resample->GetOutput());
   session.Watch(snake, "contours");
+  session.Watch(slices, "choosing slices");
   session.Watch(resample, "resampling");
   session.Watch(axes, "medial axes");
   axes->Update();
@@ -130,6 +138,11 @@ AddContoursCommand(CLI::App & app, Action & action)
   options->bone.AddTo(command);
   command->add_option("--slice-step", options->sliceStep, "Distance of slices in mm; default: every slice of the CT")
     ->check(Positive());
+  command
+    ->add_option("--adaptive-slices",
+                 options->meanStep,
+                 "Keep slices this many mm apart on average, more of them where the sections change")
+    ->check(Positive());
   command->add_option("--contour-spacing", options->spacing, "Largest distance of a contour's points in mm; default 4")
     ->check(Positive());
   AddAxisOption(command, options->axis);
@@ -154,6 +167,11 @@ AddContoursCommand(CLI::App & app, Action & action)
     ->add_option("--layer-distance",
                  options->layerDistance,
                  "Least distance between a contour and the next inside it in mm; default 0.8 or a pixel")
+    ->check(Positive());
+  command
+    ->add_option("--layer-ratio",
+                 options->layerRatio,
+                 "Largest distance of points against the distance of the next contour; default 6")
     ->check(Positive());
   command
     ->add_flag(

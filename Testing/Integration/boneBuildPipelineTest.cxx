@@ -72,7 +72,7 @@ TEST_F(BuildPipelineTest, UnchangedPipelineRunsNoStage)
   EXPECT_THAT(
     Executed(),
     testing::ElementsAre(
-      "contours", "resample", "medial axis", "tiling", "quality", "fit", "collapse", "radiograph L1", "radiograph L2"));
+      "contours", "slices", "resample", "medial axis", "tiling", "quality", "fit", "collapse", "radiograph L1", "radiograph L2"));
   m_Clock.Reset();
   m_Pipeline.Update();
   EXPECT_THAT(Executed(), testing::IsEmpty());

@@ -14,7 +14,8 @@ namespace bone
 /** \class ContourResampleFilter
  * \brief Fits closed cubic B-splines to contours and samples them by curvature (paper 2.1).
  *
- * The output has the input's contours, in order, with points on the splines; medial axes are left out, since they
+ * The output has the input's contours, in order, as the polygons nearest to them whose corners stand where the splines
+ * say; medial axes are left out, since they
  * belong to the contours as they were. How: \ref SampleSlice. Contours stay simple, nested and
  * MinimumLayerDistance apart: an inner contour that is nearer, as given or where it is coarsely sampled, is moved in; a
  * warning names the slices where that cannot be.
@@ -38,6 +39,9 @@ public:
   /** Distance of the given points to the spline, and of chords to it, at most, mm. Default 0.2. */
   itkSetMacro(Tolerance, double);
   itkGetConstMacro(Tolerance, double);
+  /** Factor of the tolerance for the contours of inner layers. Default 2.5. */
+  itkSetMacro(InnerToleranceFactor, double);
+  itkGetConstMacro(InnerToleranceFactor, double);
   /** Least (default 0.8) and largest (default 4) distance between samples, mm. */
   itkSetMacro(MinimumSpacing, double);
   itkGetConstMacro(MinimumSpacing, double);
@@ -46,7 +50,7 @@ public:
   /** Least distance between a contour and the next inside it, mm. Default 0.8. */
   itkSetMacro(MinimumLayerDistance, double);
   itkGetConstMacro(MinimumLayerDistance, double);
-  /** Samples lie at most this many times the local distance to the next contour apart (but MinimumSpacing). Default 2.
+  /** Samples lie at most this many times the local distance to the next contour apart (but MinimumSpacing). Default 6.
    */
   itkSetMacro(ThinLayerRatio, double);
   itkGetConstMacro(ThinLayerRatio, double);
@@ -98,7 +102,8 @@ private:
   double                      m_MinimumSpacing{ 0.8 };
   double                      m_MaximumSpacing{ 4.0 };
   double                      m_MinimumLayerDistance{ 0.8 };
-  double                      m_ThinLayerRatio{ 2.0 };
+  double                      m_InnerToleranceFactor{ 2.5 };
+  double                      m_ThinLayerRatio{ 6.0 };
   std::size_t                 m_TargetNumberOfSamples{ 0 };
   std::size_t                 m_TargetNumberOfTetrahedra{ 0 };
   double                      m_SpacingScale{ 1.0 };

@@ -21,6 +21,7 @@ ContourResampleFilter<TContourStack>::VerifyPreconditions() ITKv5_CONST
   this->CheckParameter("MinimumSpacing", m_MinimumSpacing);
   this->CheckParameter("MaximumSpacing", m_MaximumSpacing);
   this->CheckParameter("MinimumLayerDistance", m_MinimumLayerDistance, true);
+  this->CheckParameter("InnerToleranceFactor", m_InnerToleranceFactor);
   this->CheckParameter("ThinLayerRatio", m_ThinLayerRatio);
   if (!(m_MinimumSpacing <= m_MaximumSpacing))
   {
@@ -131,6 +132,7 @@ ContourResampleFilter<TContourStack>::MakeSlice(const TContourStack & input, std
   parameters.maximumSpacing = m_MaximumSpacing;
   parameters.minimumDistance = m_MinimumLayerDistance;
   parameters.spacingScale = m_SpacingScale;
+  parameters.innerTolerance = m_InnerToleranceFactor;
   parameters.thinLayerRatio = m_ThinLayerRatio;
   return SampleSlice(input.GetSlices()[k], input, parameters, m_SliceReports[k]);
 }
@@ -144,6 +146,7 @@ ContourResampleFilter<TContourStack>::PrintSelf(std::ostream & os, itk::Indent i
   os << indent << "MinimumSpacing: " << m_MinimumSpacing << '\n';
   os << indent << "MaximumSpacing: " << m_MaximumSpacing << '\n';
   os << indent << "MinimumLayerDistance: " << m_MinimumLayerDistance << '\n';
+  os << indent << "InnerToleranceFactor: " << m_InnerToleranceFactor << '\n';
   os << indent << "ThinLayerRatio: " << m_ThinLayerRatio << '\n';
   os << indent << "TargetNumberOfSamples: " << m_TargetNumberOfSamples << '\n';
   os << indent << "TargetNumberOfTetrahedra: " << m_TargetNumberOfTetrahedra << '\n';

@@ -12,11 +12,12 @@ namespace bone
 /** Parameters of \ref SampleSlice, mm. */
 struct SamplingParameters
 {
-  double tolerance{ 0.2 };       ///< of the spline to the contour's points, and of a chord to the spline
+  double tolerance{ 0.2 };       ///< of the spline to the contour's points, and of samples and chords to the spline
+  double innerTolerance{ 2.5 };  ///< factor of the tolerance for inner layers
   double minimumSpacing{ 0.8 };  ///< between neighbouring samples
   double maximumSpacing{ 4.0 };  ///< between neighbouring samples
   double minimumDistance{ 0.8 }; ///< between a contour and the next inside it
-  double thinLayerRatio{ 2.0 };  ///< spacing over the distance to the next layer, at most (but for minimumSpacing)
+  double thinLayerRatio{ 6.0 };  ///< spacing over the distance to the next layer, at most (but for minimumSpacing)
   double spacingScale{ 1.0 };    ///< factor of every spacing, limits too
 };
 
@@ -33,8 +34,9 @@ struct SamplingReport
 
 /** \brief Replaces the closed contours of a slice by samples of cubic B-splines fitted to them; axes are left out.
  *
- * Where the spline curves by k, samples lie sqrt(8 tolerance / k) apart, within the spacings' limits and the thin
- * layers'; the spacing changes by at most 0.3 per unit of length. Points lie on the spline, but where chords bring a
+ * Where the spline curves by k, samples lie sqrt(12 tolerance / k) apart, within the spacings' limits and the thin
+ * layers'; the spacing changes by at most 0.3 per unit of length. The samples' polygon is the one nearest in the mean
+ * square to the contour given: chords pass it on both sides, and areas are kept. Where chords bring a
  * contour nearer to the one around it (or to a hole beside it) than the minimum distance, the inner one is moved away.
  * What still conflicts is fitted and sampled more finely, then kept as given. The result is simple and
  * disjoint (decided exactly). Order, ids, layers and orientation are kept. */

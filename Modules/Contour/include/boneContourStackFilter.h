@@ -53,7 +53,11 @@ protected:
   void
   GenerateData() override;
 
-  /** One slice of the output; called from many threads at once. */
+  /** The slices of the input that the output's are made from, ascending: all, unless overridden. */
+  virtual std::vector<std::size_t>
+  ChooseSlices(const TContourStack & input);
+
+  /** The output's slice made from slice k of the input; called from many threads at once. */
   virtual ContourSlice
   MakeSlice(const TContourStack & input, std::size_t k) = 0;
 };

@@ -9,6 +9,7 @@
 #include <itkMultiThreaderBase.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace bone
 {
@@ -66,6 +67,15 @@ ContourStackFilter<TContourStack>::CheckParameter(const char * name, double valu
 }
 
 template <typename TContourStack>
+std::vector<std::size_t>
+ContourStackFilter<TContourStack>::ChooseSlices(const TContourStack & input)
+{
+  std::vector<std::size_t> all(input.GetSlices().size());
+  std::iota(all.begin(), all.end(), std::size_t{ 0 });
+  return all;
+}
+
+template <typename TContourStack>
 void
 ContourStackFilter<TContourStack>::GenerateData()
 {
@@ -75,15 +85,16 @@ ContourStackFilter<TContourStack>::GenerateData()
     itkExceptionMacro("The input stack holds no contour.");
   }
   input->Verify();
-  ContourStack::SliceContainer slices(input->GetSlices().size());
   this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
+  const std::vector<std::size_t> chosen = this->ChooseSlices(*input);
+  ContourStack::SliceContainer   slices(chosen.size());
   this->GetMultiThreader()->ParallelizeArray(
     0,
     slices.size(),
-    [this, input, &slices](itk::SizeValueType k) {
+    [this, input, &slices, &chosen](itk::SizeValueType k) {
       if (!this->GetAbortGenerateData())
       {
-        slices[k] = this->MakeSlice(*input, k);
+        slices[k] = this->MakeSlice(*input, chosen[k]);
       }
     },
     nullptr);

@@ -142,6 +142,30 @@ Sentence(int count, const std::string & what)
   return text.str();
 }
 
+// Whether q lies in bone.
+bool
+InBone(const BoneSection & section, const Vector2 & q)
+{
+  return std::any_of(section.pieces.begin(), section.pieces.end(), [&q](const BonePiece & piece) {
+    return PointInPolygon(q, piece.outer) &&
+           std::none_of(
+             piece.holes.begin(), piece.holes.end(), [&q](const Polygon & hole) { return PointInPolygon(q, hole); });
+  });
+}
+
+// Whether most of a loop lies outside the bone on a slice next to slice k: a hole there is the end of a notch or a
+// socket, and no void.
+bool
+OpensToNeighbour(const std::vector<BoneSection> & sections, std::size_t k, const Polygon & hole)
+{
+  const auto opens = [&hole](const BoneSection & section) {
+    const auto outside = std::count_if(
+      hole.begin(), hole.end(), [&section](const Vector2 & q) { return !InBone(section, q); });
+    return 2 * static_cast<std::size_t>(outside) > hole.size();
+  };
+  return (k > 0 && opens(sections[k - 1])) || (k + 1 < sections.size() && opens(sections[k + 1]));
+}
+
 int
 DropHoles(std::vector<BoneSection> & sections, int minimumSlices)
 {
@@ -160,9 +184,19 @@ DropHoles(std::vector<BoneSection> & sections, int minimumSlices)
   Groups                 groups = LinkItems(items, linked);
   const std::vector<int> slices = CountSlices(items, groups);
   int                    dropped = 0;
+  std::vector<char>      open(items.size(), 0); // of groups
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    const std::size_t g = groups.Find(i);
+    if (slices[g] < minimumSlices && OpensToNeighbour(sections, items[i].slice, *items[i].polygon))
+    {
+      open[g] = 1;
+    }
+  }
   for (std::size_t i = items.size(); i-- > 0;)
   {
-    if (slices[groups.Find(i)] < minimumSlices)
+    const std::size_t g = groups.Find(i);
+    if (slices[g] < minimumSlices && open[g] == 0)
     {
       auto & holes = sections[items[i].slice].pieces[items[i].piece].holes;
       holes.erase(holes.begin() + static_cast<std::ptrdiff_t>(items[i].hole));

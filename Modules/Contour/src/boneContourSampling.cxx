@@ -7,6 +7,8 @@
 #include "boneMedialAxis.h"
 #include "bonePlanarCrossing.h"
 
+#include <Eigen/Sparse>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +20,7 @@ namespace
 // Neighbouring samples' spacing changes by at most this per unit of length.
 constexpr double Gradation = 0.3;
 constexpr int    SamplesPerSpan = 8;
+constexpr double ChordFactor = 12.0; // a chord of length s on curvature k rises by k s^2 / 8, of which 2/3 lie outside
 constexpr int    MostRefinements = 4;
 
 struct LoopPlan
@@ -89,6 +92,66 @@ ShareAlong(LoopPlan & plan)
     share.push_back(share.back() + 0.5 * step[i] * (1.0 / plan.target[i] + 1.0 / plan.target[(i + 1) % n]));
   }
   return share;
+}
+
+// The closed polygon nearest to a curve in the mean square, corner k standing at position at[k] along the curve's fine
+// points: chords then pass the curve on both sides, and the polygon keeps its area.
+Polygon
+FitChords(const std::vector<Vector2> & curve, const std::vector<double> & at)
+{
+  const auto                          n = static_cast<Eigen::Index>(at.size());
+  const std::size_t                   m = curve.size();
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX2d                    right = Eigen::MatrixX2d::Zero(n, 2);
+  const auto                          point = [&](double s) {
+    const double whole = std::floor(s);
+    const auto   i = static_cast<std::size_t>(whole) % m;
+    return Vector2(curve[i] + (s - whole) * (curve[(i + 1) % m] - curve[i]));
+  };
+  for (Eigen::Index k = 0; k < n; ++k)
+  {
+    const Eigen::Index   next = (k + 1) % n;
+    const double         begin = at[static_cast<std::size_t>(k)];
+    const double         end = next > 0 ? at[static_cast<std::size_t>(next)] : at[0] + static_cast<double>(m);
+    std::vector<Vector2> piece{ point(begin) };
+    for (double s = std::floor(begin) + 1.0; s < end; s += 1.0)
+    {
+      piece.push_back(point(s));
+    }
+    piece.push_back(point(end));
+    std::vector<double> along{ 0.0 };
+    for (std::size_t i = 1; i < piece.size(); ++i)
+    {
+      along.push_back(along.back() + (piece[i] - piece[i - 1]).norm());
+    }
+    for (std::size_t i = 1; i < piece.size() && along.back() > 0.0; ++i)
+    {
+      // Simpson's rule, exact: the integrands are of second degree.
+      for (int node = 0; node < 3; ++node)
+      {
+        const double  share = 0.5 * node;
+        const double  weight = (along[i] - along[i - 1]) * (node == 1 ? 4.0 : 1.0) / 6.0;
+        const double  t = ((1.0 - share) * along[i - 1] + share * along[i]) / along.back();
+        const Vector2 q = (1.0 - share) * piece[i - 1] + share * piece[i];
+        entries.emplace_back(k, k, weight * (1.0 - t) * (1.0 - t));
+        entries.emplace_back(k, next, weight * t * (1.0 - t));
+        entries.emplace_back(next, k, weight * t * (1.0 - t));
+        entries.emplace_back(next, next, weight * t * t);
+        right.row(k) += weight * (1.0 - t) * q.transpose();
+        right.row(next) += weight * t * q.transpose();
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  Polygon                                                  polygon;
+  const Eigen::MatrixX2d                                   corners = solver.solve(right);
+  for (Eigen::Index k = 0; k < n; ++k)
+  {
+    polygon.emplace_back(corners.row(k).transpose());
+  }
+  return polygon;
 }
 
 class SliceSampler
@@ -242,7 +305,7 @@ private:
     const double length = Perimeter(plan.given);
     const double longest = std::max(0.25 * m_Parameters.maximumSpacing * plan.scale, length / 2000.0);
     Polygon      points = SplitEdges(plan.given, std::min(longest, length / 16.0));
-    plan.fit = FitClosedBSplineWithin(points, m_Parameters.tolerance * plan.scale);
+    plan.fit = FitClosedBSplineWithin(points, this->Tolerance(plan) * plan.scale);
     const auto m = plan.fit.curve.GetNumberOfControlPoints();
     plan.curve.clear();
     for (std::size_t i = 0; i < SamplesPerSpan * m; ++i)
@@ -252,11 +315,17 @@ private:
   }
 
   double
+  Tolerance(const LoopPlan & plan) const
+  {
+    return m_Parameters.tolerance * (plan.layer > 0 ? m_Parameters.innerTolerance : 1.0);
+  }
+
+  double
   TargetSpacing(std::size_t c, std::size_t i) const
   {
     const LoopPlan & plan = m_Plans[c];
     const double     curvature = std::abs(plan.fit.curve.Curvature(static_cast<double>(i) / SamplesPerSpan));
-    double           spacing = std::sqrt(8.0 * m_Parameters.tolerance / std::max(curvature, 1e-9));
+    double           spacing = std::sqrt(ChordFactor * this->Tolerance(plan) / std::max(curvature, 1e-9));
     spacing = std::min(spacing, m_Parameters.maximumSpacing);
     for (std::size_t other = 0; other < m_Plans.size(); ++other)
     {
@@ -267,6 +336,32 @@ private:
       }
     }
     return plan.scale * m_Parameters.spacingScale * std::max(spacing, m_Parameters.minimumSpacing);
+  }
+
+  // Positions on the contour given that are nearest to those on the curve; none where they are not in order.
+  std::vector<double>
+  OnGiven(std::size_t c, const std::vector<double> & at) const
+  {
+    const LoopPlan &    plan = m_Plans[c];
+    const auto          size = static_cast<double>(plan.given.size());
+    std::vector<double> onGiven;
+    double              turned = 0.0;
+    for (const double s : at)
+    {
+      const auto found = m_ToGiven[c](plan.fit.curve.Evaluate(s / SamplesPerSpan));
+      double     position = static_cast<double>(found.edge) + found.along + turned;
+      if (!onGiven.empty() && position <= onGiven.back() && turned == 0.0)
+      {
+        turned = size;
+        position += size;
+      }
+      if (!onGiven.empty() && (position <= onGiven.back() || position >= onGiven.front() + size))
+      {
+        return {};
+      }
+      onGiven.push_back(position);
+    }
+    return onGiven;
   }
 
   void
@@ -286,8 +381,8 @@ private:
     }
     const std::vector<double> share = ShareAlong(plan);
     const int                 count = std::max(8, static_cast<int>(std::ceil(share.back() - 1e-9)));
-    plan.sampled.clear();
-    std::size_t i = 0;
+    std::vector<double> at;
+    std::size_t         i = 0;
     for (int k = 0; k < count; ++k)
     {
       const double wanted = share.back() * k / count;
@@ -296,8 +391,10 @@ private:
         ++i;
       }
       const double fraction = (wanted - share[i]) / (share[i + 1] - share[i]);
-      plan.sampled.push_back(plan.fit.curve.Evaluate((static_cast<double>(i) + fraction) / SamplesPerSpan));
+      at.push_back(static_cast<double>(i) + fraction);
     }
+    const std::vector<double> onGiven = this->OnGiven(c, at);
+    plan.sampled = onGiven.empty() ? FitChords(plan.curve, at) : FitChords(plan.given, onGiven);
   }
 
   // Contours that cross, touch, or come too near to another.

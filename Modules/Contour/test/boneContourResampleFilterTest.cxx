@@ -99,8 +99,8 @@ TEST(ContourResampleFilter, SpacingFollowsCurvatureBetweenItsLimits)
       atSide = std::max(atSide, d);
     }
   }
-  // sqrt(8 * 0.05 / curvature): 0.92 mm at the tip (curvature 30/64), the limit of 4 mm at the side (8/900).
-  EXPECT_NEAR(atTip, 0.92, 0.2);
+  // sqrt(12 * 0.05 / curvature): 1.13 mm at the tip (curvature 30/64), the limit of 4 mm at the side (8/900).
+  EXPECT_NEAR(atTip, 1.13, 0.2);
   EXPECT_NEAR(atSide, 4.0, 0.5);
 }
 
@@ -119,7 +119,27 @@ TEST(ContourResampleFilter, DensityIsTheSquareRootOfCurvature)
     const double t = std::atan2(middle.y() / 12.0, middle.x() / 20.0);
     const double speed = std::hypot(20.0 * std::sin(t), 12.0 * std::cos(t));
     const double curvature = 20.0 * 12.0 / (speed * speed * speed);
-    EXPECT_NEAR((next - sampled[i]).norm() / std::sqrt(0.08 / curvature), 1.0, 0.1);
+    EXPECT_NEAR((next - sampled[i]).norm() / std::sqrt(0.12 / curvature), 1.0, 0.1);
+  }
+}
+
+TEST(ContourResampleFilter, CoarseSamplesKeepTheArea)
+{
+  for (const double tolerance : { 0.1, 0.3, 0.9 })
+  {
+    auto filter = Resampler(OneSlice({ Ellipse(20, 12, 800) }, { 0 }), 50.0);
+    filter->SetTolerance(tolerance);
+    filter->Update();
+    const Polygon sampled = PlanePoints(*filter->GetOutput(), filter->GetOutput()->GetSlices()[0].contours[0]);
+    EXPECT_LT(sampled.size(), 60U);
+    EXPECT_NEAR(bone::SignedArea(sampled) / (M_PI * 20.0 * 12.0), 1.0, 0.003);
+    for (const Vector2 & q : sampled)
+    {
+      // A corner lies outside by two thirds of what the chord rises, at most.
+      const double r = std::hypot(q.x() / 20.0, q.y() / 12.0);
+      EXPECT_GT(r, 1.0);
+      EXPECT_LT((r - 1.0) * 12.0, 1.5 * tolerance);
+    }
   }
 }
 
@@ -213,6 +233,7 @@ TEST(ContourResampleFilter, ThinLayersAreSampledFiner)
 {
   // Thickness 1 mm on the left, 6 mm on the right.
   auto filter = Resampler(OneSlice({ Ellipse(20, 20, 500), Ellipse(16.5, 16.5, 500, { -2.5, 0 }) }, { 0, 1 }), 5.0);
+  filter->SetThinLayerRatio(2.0);
   filter->Update();
   const Polygon sampled = PlanePoints(*filter->GetOutput(), filter->GetOutput()->GetSlices()[0].contours[0]);
   for (std::size_t i = 0; i < sampled.size(); ++i)
@@ -220,7 +241,7 @@ TEST(ContourResampleFilter, ThinLayersAreSampledFiner)
     const double d = (sampled[i] - sampled[(i + 1) % sampled.size()]).norm();
     if (sampled[i].x() < -19.0)
     {
-      EXPECT_LT(d, 2.4);
+      EXPECT_LT(d, 2.6);
     }
     if (sampled[i].x() > 19.0)
     {

@@ -151,6 +151,33 @@ TEST(BoneSection, DropsWhatExistsOnOneSliceOnly)
   EXPECT_EQ(sections[5].pieces[0].holes.size(), 1u);
 }
 
+TEST(BoneSection, KeepsAHoleThatIsTheEndOfANotch)
+{
+  // A ring open to one side below, closed on the last slice before it is solid.
+  std::vector<BoneSection> sections;
+  Polygon                  hole = Ellipse(5, 5, 40);
+  std::reverse(hole.begin(), hole.end());
+  Polygon open = Ellipse(10, 10, 60);
+  open.erase(open.begin(), open.begin() + 4);
+  open.erase(open.end() - 4, open.end());
+  for (int i = 3; i < 38; ++i)
+  {
+    open.push_back(Ellipse(5.5, 5.5, 40)[static_cast<std::size_t>(40 - i)]);
+  }
+  for (int k = 0; k < 8; ++k)
+  {
+    BoneSection section{ 1.0 * k, { { k < 3 ? open : Ellipse(10, 10, 60), {}, {}, {} } } };
+    if (k == 3)
+    {
+      section.pieces[0].holes.push_back(hole);
+    }
+    sections.push_back(section);
+  }
+  ASSERT_GT(SignedArea(open), 0.0);
+  EXPECT_TRUE(DropShortLived(sections, 3, 10.0).empty());
+  EXPECT_EQ(sections[3].pieces[0].holes.size(), 1u);
+}
+
 TEST(BoneSection, AnInnerContourMustLastAndTheChainOfMostVolumeIsChosen)
 {
   std::vector<BoneSection> sections;

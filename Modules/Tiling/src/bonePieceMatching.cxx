@@ -4,9 +4,10 @@
 #include "boneSectionBuilder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <numeric>
 
 namespace bone
 {
@@ -66,38 +67,7 @@ Overlap(const std::vector<Vector2> & p, const std::vector<Vector2> & q)
   return common / std::max(1e-12, std::min(std::abs(SignedArea(p)), std::abs(SignedArea(q))));
 }
 
-struct Link
-{
-  int    lower, upper;
-  double score;
-};
-
-/** Drops the weakest links until no group has several pieces on both sides. */
-void
-KeepStars(std::vector<Link> & links, std::size_t nl, std::size_t nu)
-{
-  std::vector<int> degreeL(nl, 0), degreeU(nu, 0);
-  for (const Link & link : links)
-  {
-    ++degreeL[link.lower];
-    ++degreeU[link.upper];
-  }
-  std::stable_sort(links.begin(), links.end(), [](const Link & a, const Link & b) { return a.score < b.score; });
-  std::vector<Link> kept;
-  for (const Link & link : links)
-  {
-    if (degreeL[link.lower] > 1 && degreeU[link.upper] > 1)
-    {
-      --degreeL[link.lower];
-      --degreeU[link.upper];
-    }
-    else
-    {
-      kept.push_back(link);
-    }
-  }
-  links = std::move(kept);
-}
+using Link = std::array<int, 2>; ///< a lower and an upper piece
 
 /** Links a piece that overlaps nothing to the nearest piece of the other slice within reach. */
 void
@@ -109,7 +79,7 @@ LinkByDistance(const std::vector<Polygon> & lower,
   std::vector<char> linkedL(lower.size(), 0), linkedU(upper.size(), 0);
   for (const Link & link : links)
   {
-    linkedL[link.lower] = linkedU[link.upper] = 1;
+    linkedL[link[0]] = linkedU[link[1]] = 1;
   }
   for (std::size_t i = 0; i < lower.size(); ++i)
   {
@@ -119,10 +89,9 @@ LinkByDistance(const std::vector<Polygon> & lower,
       {
         continue;
       }
-      const double distance = Separation(lower[i], upper[j]);
-      if (distance < reach)
+      if (Separation(lower[i], upper[j]) < reach)
       {
-        links.push_back({ static_cast<int>(i), static_cast<int>(j), -distance });
+        links.push_back({ { static_cast<int>(i), static_cast<int>(j) } });
       }
     }
   }
@@ -132,59 +101,43 @@ LinkByDistance(const std::vector<Polygon> & lower,
 std::vector<Group>
 MatchPieces(const std::vector<Polygon> & lower, const std::vector<Polygon> & upper, double slabHeight)
 {
+  const int         nl = static_cast<int>(lower.size()), nu = static_cast<int>(upper.size());
   std::vector<Link> links;
-  for (std::size_t i = 0; i < lower.size(); ++i)
+  for (int i = 0; i < nl; ++i)
   {
-    for (std::size_t j = 0; j < upper.size(); ++j)
+    for (int j = 0; j < nu; ++j)
     {
-      const double score = Overlap(lower[i], upper[j]);
-      if (score > MinimumOverlap)
+      if (Overlap(lower[i], upper[j]) > MinimumOverlap)
       {
-        links.push_back({ static_cast<int>(i), static_cast<int>(j), score });
+        links.push_back({ { i, j } });
       }
     }
   }
   LinkByDistance(lower, upper, ReachInSlabHeights * slabHeight, links);
-  KeepStars(links, lower.size(), upper.size());
-  // Each group is named by its single piece; stars need no general component search.
-  std::vector<Group> groups;
-  std::vector<int>   groupL(lower.size(), -1), groupU(upper.size(), -1);
-  std::stable_sort(links.begin(), links.end(), [](const Link & a, const Link & b) {
-    return std::tie(a.lower, a.upper) < std::tie(b.lower, b.upper);
-  });
+  std::vector<int> root(nl + nu);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&root](int i) {
+    while (root[i] != i)
+    {
+      i = root[i] = root[root[i]];
+    }
+    return i;
+  };
   for (const Link & link : links)
   {
-    int & gl = groupL[link.lower];
-    int & gu = groupU[link.upper];
-    if (gl < 0 && gu < 0)
-    {
-      gl = gu = static_cast<int>(groups.size());
-      groups.push_back({ { link.lower }, { link.upper } });
-    }
-    else if (gl < 0)
-    {
-      gl = gu;
-      groups[gu].lower.push_back(link.lower);
-    }
-    else if (gu < 0)
-    {
-      gu = gl;
-      groups[gl].upper.push_back(link.upper);
-    }
+    root[find(nl + link[1])] = find(link[0]);
   }
-  for (std::size_t i = 0; i < lower.size(); ++i)
+  std::vector<Group> groups;
+  std::vector<int>   groupOf(nl + nu, -1);
+  for (int i = 0; i < nl + nu; ++i)
   {
-    if (groupL[i] < 0)
+    int & group = groupOf[find(i)];
+    if (group < 0)
     {
-      groups.push_back({ { static_cast<int>(i) }, {} });
+      group = static_cast<int>(groups.size());
+      groups.emplace_back();
     }
-  }
-  for (std::size_t j = 0; j < upper.size(); ++j)
-  {
-    if (groupU[j] < 0)
-    {
-      groups.push_back({ {}, { static_cast<int>(j) } });
-    }
+    (i < nl ? groups[group].lower : groups[group].upper).push_back(i < nl ? i : i - nl);
   }
   return groups;
 }

@@ -15,7 +15,7 @@ namespace
 {
 constexpr int    RefinementRounds = 3;
 constexpr double LeastEdge = 0.6; // mm; shorter edges are not split
-constexpr double LongEdge = 3.0;  // of the distance to the other loop
+constexpr double LongEdge = 8.0;  // of the distance to the other loop
 
 using Loop = PieceOutline::Loop;
 

@@ -41,8 +41,8 @@ struct Group
 };
 
 /** Corresponding pieces of two slices by overlap of their outer contours, and by distance where a piece overlaps none
- * (paper 2.5). Each group has a single piece on one side at least; a piece without counterpart is a group of its own.
- */
+ * (paper 2.5). A group is all that hangs together by such links, any number on both slices; a piece without counterpart is
+ * a group of its own. */
 std::vector<Group>
 MatchPieces(const std::vector<std::vector<Vector2>> & lower,
             const std::vector<std::vector<Vector2>> & upper,

@@ -6,6 +6,7 @@
 #include "boneConstrainedTriangulation.h"
 #include "bonePlanarOverlay.h"
 #include "bonePredicates.h"
+#include "boneSlabSurface.h"
 #include "boneSteinerCollapse.h"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
 constexpr double ShiftGain = 1.5; ///< a shift leans upright walls too, so it must pay
 constexpr int    UsualShifts = 2; ///< looked at always; others where these do not do
+constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
 constexpr double Shift = 1e-5;    // mm, parts vertices of the two slices that lie over each other
 
 /** The triangulation of a slice and of what is outside the bone. */
@@ -170,9 +172,6 @@ OverlaySides(const Side & lower, const Side & upper)
   }
 }
 
-/** Regions over the height of the slab, from the lower slice to the upper one, of a triangle of the overlay. */
-using Column = std::vector<int>;
-
 /** One step of regions between neighbours at most: from `from` down to `to` within `steps` steps, staying bone as long
  * as it can. */
 void
@@ -264,7 +263,7 @@ public:
         throw std::runtime_error("its contours are too close to be told apart");
       }
     }
-    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner));
+    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner, PlacesOf(low, high)));
   }
 
 private:
@@ -321,6 +320,29 @@ private:
         m_Mesh.points.push_back(m_Stack.FromPlane(q + share * m_Sides[1]->shift, (1 - share) * low + share * high));
       }
     }
+  }
+
+  /** Where the points in between belong. */
+  SteinerPlaces
+  PlacesOf(double low, double high) const
+  {
+    const SlabSurface surface = FindSlabSurface(
+      { { &m_Sides[0]->box, &m_Sides[1]->box } }, { { &m_Sides[0]->region, &m_Sides[1]->region } }, m_Overlay, m_Columns);
+    SteinerPlaces places;
+    places.tolerance = SurfaceTolerance * (high - low);
+    for (std::size_t i = 0; i < surface.height.size(); ++i)
+    {
+      const double share = surface.height[i];
+      places.ideal.push_back(share < 0 ? m_Mesh.points[m_FirstSteiner + i]
+                                       : m_Stack.FromPlane(m_Overlay.points[i % m_Overlay.points.size()] +
+                                                             share * m_Sides[1]->shift,
+                                                           (1 - share) * low + share * high));
+    }
+    for (const auto & face : surface.faces)
+    {
+      places.faces.push_back({ { m_FirstSteiner + face[0], m_FirstSteiner + face[1], m_FirstSteiner + face[2] } });
+    }
+    return places;
   }
 
   IdType

@@ -21,6 +21,7 @@ constexpr double GoodShape = 0.4;
 constexpr double FirstFloor = 0.03; ///< worst shape of bone that the first round may make
 constexpr double ShapeWeight = 3.0;
 constexpr double SteinerTargetFactor = 1.5;
+constexpr double ErrorWeight = 10.0; ///< a surface's error against the way a point goes
 
 /** Volume over the cube of the root mean square edge, 1 for a regular tetrahedron; negative where inverted. */
 double
@@ -33,17 +34,70 @@ Shape(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d
   return 1.4142135623730951 * x.cross(y).dot(z) / (square * std::sqrt(square));
 }
 
+/** Sum of squared distances to planes, weighted by area. */
+struct Quadric
+{
+  Eigen::Matrix3d a{ Eigen::Matrix3d::Zero() };
+  Vector3         b{ Vector3::Zero() };
+  double          c{ 0.0 };
+  double          area{ 0.0 };
+
+  void
+  AddPlane(const Vector3 & normal, const Vector3 & point, double weight)
+  {
+    const double d = -normal.dot(point);
+    a += weight * normal * normal.transpose();
+    b += weight * d * normal;
+    c += weight * d * d;
+    area += weight;
+  }
+
+  Quadric &
+  operator+=(const Quadric & other)
+  {
+    a += other.a;
+    b += other.b;
+    c += other.c;
+    area += other.area;
+    return *this;
+  }
+
+  /** Root mean square distance of x to the planes. */
+  double
+  Distance(const Vector3 & x) const
+  {
+    return area > 0 ? std::sqrt(std::max(0.0, (x.dot(a * x) + 2.0 * b.dot(x) + c) / area)) : 0.0;
+  }
+};
+
 class SteinerCollapser
 {
 public:
-  SteinerCollapser(const MeshArrays & mesh, IdType first)
+  SteinerCollapser(const MeshArrays & mesh, IdType first, const SteinerPlaces & places)
     : m_Complex(mesh)
     , m_First(first)
+    , m_Places(places)
+    , m_Quadrics(mesh.points.size() - first)
     , m_Dirty(mesh.points.size(), 1)
     , m_Gone(mesh.points.size(), 0)
     , m_Target(mesh.points.size(), -1)
     , m_Cost(mesh.points.size(), 0.0)
-  {}
+  {
+    m_Origin = places.ideal.empty() ? Vector3(Vector3::Zero()) : places.ideal.front();
+    for (const auto & face : places.faces)
+    {
+      const Vector3 &p = Ideal(face[0]), &q = Ideal(face[1]), &r = Ideal(face[2]);
+      const Vector3  normal = (q - p).cross(r - p);
+      const double   twice = normal.norm();
+      if (twice > 0)
+      {
+        for (IdType v : face)
+        {
+          m_Quadrics[v - m_First].AddPlane(normal / twice, p - m_Origin, 0.5 * twice);
+        }
+      }
+    }
+  }
 
   /** Collapses until nothing more is allowed that makes no worse shape than `floor`, or than there was. */
   void
@@ -84,6 +138,36 @@ public:
     }
   }
 
+  /** Moves the points that are left towards their ideal places. */
+  void
+  MoveToIdeal()
+  {
+    const IdType points = static_cast<IdType>(m_Complex.Points().size());
+    for (int round = 0; round < MoveRounds; ++round)
+    {
+      for (IdType v = m_First; v < points; ++v)
+      {
+        const Vector3 from = m_Complex.Points()[v];
+        if (m_Gone[v] || m_Complex.Dimension(v) == 3 || from == Ideal(v))
+        {
+          continue;
+        }
+        const double worst = std::min(FirstFloor, WorstShape(v));
+        double       share = 1.0;
+        for (int attempt = 0; attempt < MoveAttempts; ++attempt, share *= 0.5)
+        {
+          m_Complex.MovePoint(v, from + share * (Ideal(v) - from));
+          if (IsPositive(v) && WorstShape(v) >= worst)
+          {
+            break;
+          }
+          m_Complex.MovePoint(v, from);
+        }
+        m_Dirty[v] = 1;
+      }
+    }
+  }
+
   MeshArrays
   Result() const
   {
@@ -103,16 +187,37 @@ public:
 private:
   using Entry = std::pair<double, IdType>;
 
+  static constexpr int MoveRounds = 3;
+  static constexpr int MoveAttempts = 4;
+
+  const Vector3 &
+  Ideal(IdType v) const
+  {
+    return v < m_First ? m_Complex.Points()[v] : m_Places.ideal[v - m_First];
+  }
+
+  /** How far the surfaces at v would be off if v were at w. */
+  double
+  SurfaceError(IdType v, IdType w) const
+  {
+    return m_Quadrics[v - m_First].Distance(Ideal(w) - m_Origin);
+  }
+
   /** Looks for the best target of v. */
   bool
   Update(IdType v)
   {
     m_Dirty[v] = 0;
-    const auto & p = m_Complex.Points();
+    const bool onSurface = m_Complex.Dimension(v) < 3;
     m_Rated.clear();
     for (IdType w : Targets(v))
     {
-      m_Rated.emplace_back((p[v] - p[w]).norm() * (w < m_First ? 1.0 : SteinerTargetFactor), w);
+      const double error = onSurface ? SurfaceError(v, w) : 0.0;
+      if (error <= m_Places.tolerance)
+      {
+        m_Rated.emplace_back(
+          ErrorWeight * error + (Place(v, onSurface) - Ideal(w)).norm() * (w < m_First ? 1.0 : SteinerTargetFactor), w);
+      }
     }
     std::sort(m_Rated.begin(), m_Rated.end());
     const double floor = std::min(m_Floor, WorstShape(v));
@@ -146,8 +251,26 @@ private:
   {
     const IdType w = m_Target[v];
     const double floor = std::min(m_Floor, WorstShape(v));
-    return w >= 0 && !m_Gone[w] && AreJoined(v, w) && ShapeAfter(v, w, floor) >= floor &&
+    return w >= 0 && !m_Gone[w] && (m_Complex.Dimension(v) == 3 || SurfaceError(v, w) <= m_Places.tolerance) && AreJoined(v, w) && ShapeAfter(v, w, floor) >= floor &&
            m_Complex.CanCollapse(v, w) == MeshOperation::Done && StaysPositive(v, w);
+  }
+
+  /** Where v counts as being: points inside regions have no place of their own. */
+  const Vector3 &
+  Place(IdType v, bool onSurface) const
+  {
+    return onSurface ? Ideal(v) : m_Complex.Points()[v];
+  }
+
+  bool
+  IsPositive(IdType v) const
+  {
+    const auto & p = m_Complex.Points();
+    const auto & star = m_Complex.Star(v);
+    return std::all_of(star.begin(), star.end(), [&](IdType t) {
+      const Id4 & c = m_Complex.Cell(t);
+      return Orient3D(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > 0;
+    });
   }
 
   bool
@@ -252,6 +375,10 @@ private:
   {
     m_Complex.Collapse(v, w);
     m_Gone[v] = 1;
+    if (w >= m_First)
+    {
+      m_Quadrics[w - m_First] += m_Quadrics[v - m_First];
+    }
     m_Dirty[w] = 1;
     for (IdType p : m_Complex.PointNeighbors(w))
     {
@@ -261,6 +388,9 @@ private:
 
   TetraComplex                                                        m_Complex;
   IdType                                                              m_First;
+  const SteinerPlaces &                                               m_Places;
+  std::vector<Quadric>                                                m_Quadrics; ///< of the Steiner points
+  Vector3                                                             m_Origin{ Vector3::Zero() };
   double                                                              m_Floor{ 0.0 };
   std::vector<char>                                                   m_Dirty, m_Gone;
   std::vector<IdType>                                                 m_Target;
@@ -272,13 +402,16 @@ private:
 } // namespace
 
 MeshArrays
-CollapseSteinerPoints(const MeshArrays & mesh, IdType firstSteiner)
+CollapseSteinerPoints(const MeshArrays & mesh, IdType firstSteiner, const SteinerPlaces & places)
 {
   MeshArrays whole = mesh;
   whole.neighbors = ComputeFaceNeighbors(whole.tetrahedra);
-  SteinerCollapser collapser(whole, firstSteiner);
+  SteinerCollapser collapser(whole, firstSteiner, places);
+  collapser.Run(FirstFloor);
+  collapser.MoveToIdeal();
   collapser.Run(FirstFloor);
   collapser.Run(0.0);
+  collapser.MoveToIdeal();
   return collapser.Result();
 }
 } // namespace tiling

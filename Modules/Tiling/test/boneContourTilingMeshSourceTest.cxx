@@ -158,6 +158,51 @@ TEST(ContourTilingMeshSource, JoinsContoursThatSplit)
   EXPECT_EQ(report.branchings, 1);
 }
 
+TEST(ContourTilingMeshSource, JoinsSeveralPiecesWithSeveral)
+{
+  // Each main piece lies over the other one and over the other side's small piece.
+  const std::vector<Loop>        below = { { { 0, 0 }, 16, 8, 0, 1 }, { { 24, 0 }, 4, 4, 0, 1 } };
+  const std::vector<Loop>        above = { { { 8, 0 }, 20, 8, 0, 1 }, { { -15, 0 }, 2.5, 2.5, 0, 1 } };
+  std::vector<std::vector<Loop>> slices(2, below);
+  slices.insert(slices.end(), 2, above);
+  auto stack = MakeStack(slices, 2.0);
+  stack->SetOpenStart(true);
+  stack->SetOpenEnd(true);
+  const MeshArrays mesh = Tile(stack);
+  const auto       validation = bone::ValidateMesh(mesh);
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 1);
+  EXPECT_EQ(validation.boundaryEuler, 2);
+  const double lower = 16 * 8 + 4 * 4, upper = 20 * 8 + 2.5 * 2.5;
+  EXPECT_NEAR(Volume(mesh, 0) / (3 * (lower + upper) * Pi * PolygonShare(24)), 1.0, 0.02);
+}
+
+TEST(ContourTilingMeshSource, ASocketEndsInADome)
+{
+  // Solid below, a hole above: its floor is neither on the lower slice nor on the upper one.
+  for (const bool layered : { false, true })
+  {
+    std::vector<Loop> solid = { { { 0, 0 }, 20, 18, 0, 1 } }, pit = { solid[0], { { 1, 0 }, 8, 7, 0, 0 } };
+    if (layered)
+    {
+      solid.push_back({ { 0, 0 }, 18, 16, 1, 2 });
+    }
+    std::vector<std::vector<Loop>> slices(2, solid);
+    slices.insert(slices.end(), 3, pit);
+    auto stack = MakeStack(slices, 3.0, 40);
+    stack->SetOpenStart(true);
+    stack->SetOpenEnd(true);
+    const MeshArrays mesh = Tile(stack);
+    const auto       validation = bone::ValidateMesh(mesh);
+    EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+    EXPECT_EQ(validation.boundaryEuler, 2);
+    const double pitVolume = 12 * Pi * 20 * 18 * PolygonShare(40) - Volume(mesh, 0);
+    const double depth = pitVolume / (Pi * 8 * 7 * PolygonShare(40)) - 6.0;
+    EXPECT_GT(depth, 0.12 * 3.0) << layered;
+    EXPECT_LT(depth, 0.50 * 3.0) << layered;
+  }
+}
+
 TEST(ContourTilingMeshSource, LetsLayersBeginAndEnd)
 {
   std::vector<std::vector<Loop>> slices;
