@@ -6,9 +6,12 @@
 
 #include "boneDRRImageFilter.h"
 #include "boneGeometryIO.h"
+#include "boneIntensityImageFilter.h"
 #include "boneMeshIO.h"
+#include "boneNoiseImageFilter.h"
 #include "boneVoxelDRRImageFilter.h"
 
+#include <map>
 #include <sstream>
 
 namespace bone
@@ -23,7 +26,12 @@ struct Options
   bool        attenuation{ false };
   bool        bilinear{ false };
   bool        walk{ false };
+  int         region{ 0 };
+  double      intensity{ 0 };
+  int         noise{ 0 };
   std::string output;
+  std::string savedGeometry;
+  std::string convention;
 };
 
 using Radiograph = CTImage;
@@ -42,11 +50,16 @@ MakeSource(const Options & options)
     auto filter = DRRImageFilter<DensityMesh<double>, Radiograph>::New();
     filter->SetInput(ReadDensityMesh(options.input));
     filter->SetMethod(options.walk ? DRRMethod::Walk : DRRMethod::Projection);
+    if (options.region > 0)
+    {
+      filter->SetMinimumRegion(options.region);
+      filter->SetMaximumRegion(options.region);
+    }
     return filter.GetPointer();
   }
-  if (options.walk)
+  if (options.walk || options.region > 0)
   {
-    throw UsageError("--walk goes with a density mesh only");
+    throw UsageError("--walk and --region go with a density mesh only");
   }
   auto filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
   filter->SetInput(ReadCT(options.input));
@@ -71,9 +84,56 @@ ViewPath(const std::string & path, std::size_t index, std::size_t count)
   return path.substr(0, dot) + "_V" + std::to_string(index + 1) + path.substr(dot);
 }
 
+/** The radiograph, or what a detector sees of it where an intensity was given. */
+Radiograph::Pointer
+Detect(const Options & options, Radiograph * integrals, std::size_t view)
+{
+  if (!(options.intensity > 0))
+  {
+    return integrals;
+  }
+  auto intensity = IntensityImageFilter<Radiograph>::New();
+  intensity->SetInput(integrals);
+  intensity->SetIncidentIntensity(options.intensity);
+  auto noise = NoiseImageFilter<Radiograph>::New();
+  noise->SetInput(intensity->GetOutput());
+  noise->SetPhotonsPerUnit(options.noise > 0 ? 1 : 0);
+  noise->SetSeed((static_cast<std::uint64_t>(view) << 32) + static_cast<std::uint64_t>(options.noise));
+  noise->Update();
+  return noise->GetOutput();
+}
+
+void
+SaveGeometry(const Options & options, const std::vector<XRayGeometry::Pointer> & views, Session & session)
+{
+  if (options.convention == "rtk")
+  {
+    const RtkGrid      grid = WriteRtkGeometry(views, options.savedGeometry);
+    std::ostringstream text;
+    text << "RTK's projection image: size " << grid.size[0] << ' ' << grid.size[1] << ", spacing "
+         << grid.spacing.transpose() << ", origin " << grid.origin.transpose()
+         << (grid.rowsDown ? ", second direction 0 -1 0" : "") << '\n';
+    session.Print(text.str());
+    return;
+  }
+  WriteGeometry(views,
+                options.savedGeometry,
+                options.convention == "matrix"        ? GeometryConvention::Matrix
+                : options.convention == "plastimatch" ? GeometryConvention::Plastimatch
+                                                      : GeometryConvention::View);
+}
+
 void
 Run(const Options & options, Session & session)
 {
+  if (options.intensity > 0 && !options.attenuation && !options.bilinear)
+  {
+    throw UsageError("--intensity needs attenuation: give --attenuation or --bilinear too");
+  }
+  if (options.noise > 0 && !(options.intensity > 0))
+  {
+    throw UsageError("--noise needs --intensity, the photons a pixel");
+  }
   const auto views = ReadGeometry(options.geometry);
   auto       source = MakeSource(options);
   source->SetHUToAttenuation(options.bilinear      ? HUToAttenuation::Bilinear
@@ -87,7 +147,11 @@ Run(const Options & options, Session & session)
   source->Update();
   for (unsigned int i = 0; i < views.size(); ++i)
   {
-    WriteImage(source->GetOutput(i), ViewPath(options.output, i, views.size()));
+    WriteImage(Detect(options, source->GetOutput(i), i).GetPointer(), ViewPath(options.output, i, views.size()));
+  }
+  if (!options.savedGeometry.empty())
+  {
+    SaveGeometry(options, views, session);
   }
   if (options.walk)
   {
@@ -112,6 +176,21 @@ AddDrrCommand(CLI::App & app, Action & action)
   command->add_flag(
     "--bilinear", options->bilinear, "Turn HU into attenuation, bone along a line of its own (CT only)");
   command->add_flag("--walk", options->walk, "Walk each ray from cell to cell, slowly, and say how many it passes");
+  command
+    ->add_option("--region", options->region, "Only this region of the mesh: cortical, trabecular, cavity or its number")
+    ->transform(CLI::Transformer(std::map<std::string, int>{ { "cortical", 1 }, { "trabecular", 2 }, { "cavity", 3 } })
+                  .description(""))
+    ->check(CLI::PositiveNumber.description(""));
+  command
+    ->add_option("--intensity", options->intensity, "Write what a detector sees of this many photons a pixel, not the "
+                                                    "line integrals (with --attenuation or --bilinear)")
+    ->check(Positive());
+  command->add_option("--noise", options->noise, "Seed of quantum noise (with --intensity)")
+    ->check(CLI::PositiveNumber.description(""));
+  command->add_option("--save-geometry", options->savedGeometry, "Also write the views, as --convention says");
+  command->add_option("--convention", options->convention, "view (default), matrix, plastimatch (.json) or rtk (.xml)")
+    ->check(CLI::IsMember({ "view", "matrix", "plastimatch", "rtk" }).description(""))
+    ->needs("--save-geometry");
   command->add_option("-o,--output", options->output, "Radiograph to write (.mha, .nii.gz, .nrrd, ...)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The commands one after the other on a small phantom, the example programs, and what `info` and `validate` say."""
 import os
+import re
 
 import numpy
 import nibabel
@@ -47,12 +48,39 @@ class Commands(TestCase):
         write_json([GEOMETRY, GEOMETRY], "two.json")
         self.succeed("drr", "d.vtu", "--geometry", "two.json", "-o", "views.mha")
         self.assertTrue(os.path.exists("views_V1.mha") and os.path.exists("views_V2.mha"))
+        self.drr_options(model)
 
         for file, says in (("ct.nii.gz", "image"), ("l.nii.gz", "image"), ("c.vtp", "contours"), ("d.vtu", "degree 2"),
                            ("h.hierarchy.json", "hierarchy"), ("g.json", "X-ray view"), ("views_V1.mha", "image")):
             out, err = self.succeed("info", file)
             self.assertIn(says, out)
             self.assertEqual(err, "")
+
+    def drr_options(self, model):
+        def pixels(*options):
+            self.succeed("drr", "d.vtu", "--geometry", "g.json", *options, "-o", "o.nii.gz")
+            return numpy.asarray(nibabel.load("o.nii.gz").dataobj)
+
+        parts = [pixels("--region", region) for region in ("cortical", "trabecular", 3)]
+        self.assertLess(numpy.abs(sum(parts) - model).max(), 1e-4 * model.max())
+        integrals = pixels("--attenuation")
+        seen = pixels("--attenuation", "--intensity", 1000)
+        self.assertLess(numpy.abs(seen - 1000 * numpy.exp(-integrals)).max(), 0.01)
+        noisy = pixels("--attenuation", "--intensity", 1000, "--noise", 7)
+        self.assertLess(numpy.abs(noisy - numpy.round(noisy)).max(), 1e-3)
+        self.assertAlmostEqual(((noisy - seen) ** 2 / seen).mean(), 1, delta=0.1)
+        for convention, name in (("view", "v.json"), ("matrix", "m.json"), ("plastimatch", "p.json"), ("rtk", "r.xml")):
+            out, _ = self.succeed("drr", "d.vtu", "--geometry", "g.json", "--save-geometry", name, "--convention",
+                                  convention, "-o", "o.nii.gz")
+            if convention == "rtk":
+                numbers = re.search(r"size (\S+) (\S+), spacing +(\S+) +(\S+), origin +(\S+) +([^\s,]+)", out).groups()
+                numbers = [float(n) for n in numbers]
+                write_json({"rtk": name, "size": [int(n) for n in numbers[:2]], "spacing": numbers[2:4],
+                            "origin": numbers[4:], "rowsDown": "direction" in out}, "r.json")
+                name = "r.json"
+            self.succeed("drr", "d.vtu", "--geometry", name, "-o", "again.nii.gz")
+            again = numpy.asarray(nibabel.load("again.nii.gz").dataobj)
+            self.assertLess(numpy.abs(again - model).mean(), 1e-4 * model.max(), convention)
 
     def test_hemipelvis_branches(self):
         self.succeed("phantom", "--bone", "hemipelvis", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")

@@ -23,6 +23,20 @@ operator<<(std::ostream & os, DRRMethod method)
   return os << (method == DRRMethod::Projection ? "Projection" : "Walk");
 }
 
+/** The points of a mesh in double precision. */
+template <typename TMesh>
+std::vector<Vector3>
+CopyPoints(const TMesh & mesh)
+{
+  std::vector<Vector3> points(mesh.GetNumberOfPoints());
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    const auto & x = mesh.GetPoints()->ElementAt(p);
+    points[p] = Vector3(x[0], x[1], x[2]);
+  }
+  return points;
+}
+
 /** \class DRRImageFilter
  * \brief Digitally reconstructed radiograph of a tetrahedral density model (paper 5).
  *
@@ -79,18 +93,18 @@ protected:
   DRRImageFilter();
   ~DRRImageFilter() override = default;
 
-  void
-  VerifyPreconditions() ITKv5_CONST override;
+  MeshRadiographOptions
+  GetOptions() const;
+  /** The mesh's points; throws where no radiograph can be made of it. */
+  std::vector<Vector3>
+  GetVerifiedPoints() const;
+
   void
   ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  /** What only the updated mesh can tell. */
-  void
-  VerifyMesh(const std::vector<Vector3> & points) const;
-
   DRRMethod m_Method{ DRRMethod::Projection };
   int       m_MinimumRegion{ std::numeric_limits<int>::min() };
   int       m_MaximumRegion{ std::numeric_limits<int>::max() };

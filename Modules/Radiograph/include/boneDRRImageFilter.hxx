@@ -6,9 +6,6 @@
 
 #include "boneDRRImageFilter.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace bone
 {
 template <typename TMesh, typename TOutputImage>
@@ -18,57 +15,25 @@ DRRImageFilter<TMesh, TOutputImage>::DRRImageFilter()
 }
 
 template <typename TMesh, typename TOutputImage>
-void
-DRRImageFilter<TMesh, TOutputImage>::VerifyPreconditions() ITKv5_CONST
+MeshRadiographOptions
+DRRImageFilter<TMesh, TOutputImage>::GetOptions() const
 {
-  Superclass::VerifyPreconditions();
-  const auto conversion = this->GetHUToAttenuation();
-  if (conversion != HUToAttenuation::None && conversion != HUToAttenuation::WaterScaled)
-  {
-    itkExceptionMacro("HUToAttenuation is "
-                      << conversion
-                      << ", which is no line: a polynomial would not stay one. Convert the CT and fit the model to the "
-                         "result (AttenuationImageFilter), then leave it at None.");
-  }
-  if (m_MinimumRegion > m_MaximumRegion)
-  {
-    itkExceptionMacro("MinimumRegion (" << m_MinimumRegion << ") is above MaximumRegion (" << m_MaximumRegion
-                                        << "): no tetrahedron would count.");
-  }
+  const auto conversion = this->GetCurve().Line();
+  return { m_MinimumRegion, m_MaximumRegion, conversion.scale, conversion.offset };
 }
 
 template <typename TMesh, typename TOutputImage>
-void
-DRRImageFilter<TMesh, TOutputImage>::VerifyMesh(const std::vector<Vector3> & points) const
+std::vector<Vector3>
+DRRImageFilter<TMesh, TOutputImage>::GetVerifiedPoints() const
 {
-  const MeshArrays & cells = this->GetInput()->GetCells();
-  if (cells.tetrahedra.empty())
+  const TMesh *        mesh = this->GetInput();
+  std::vector<Vector3> points = CopyPoints(*mesh);
+  const std::string    obstacle = FindObstacle(points, mesh->GetCells(), GetOptions(), this->GetHUToAttenuation());
+  if (!obstacle.empty())
   {
-    itkExceptionMacro("The mesh has no tetrahedra.");
+    itkExceptionMacro(<< obstacle);
   }
-  if (!cells.HasDensity())
-  {
-    itkExceptionMacro("The mesh has no density: fit one to a CT first (DensityFitFilter).");
-  }
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(points.begin(), points.end(), [](const Vector3 & p) { return p.allFinite(); }) ||
-      !std::all_of(cells.coefficients.begin(), cells.coefficients.end(), finite))
-  {
-    itkExceptionMacro("A point or a density coefficient of the mesh is not finite.");
-  }
-  const bool restricted =
-    m_MinimumRegion > std::numeric_limits<int>::min() || m_MaximumRegion < std::numeric_limits<int>::max();
-  if (restricted && cells.region.empty())
-  {
-    itkExceptionMacro("The mesh has no regions to choose from: leave MinimumRegion and MaximumRegion alone.");
-  }
-  const auto quantity = cells.quantity;
-  if (this->GetHUToAttenuation() != HUToAttenuation::None && quantity != DensityQuantity::HounsfieldUnit &&
-      quantity != DensityQuantity::Unknown)
-  {
-    itkExceptionMacro("HUToAttenuation is " << this->GetHUToAttenuation() << ", but the mesh's density is in "
-                                            << DensityQuantityName(quantity) << ": set it to None.");
-  }
+  return points;
 }
 
 template <typename TMesh, typename TOutputImage>
@@ -76,18 +41,10 @@ void
 DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
                                                       const std::vector<float *> &            integrals)
 {
-  const TMesh *        mesh = this->GetInput();
-  std::vector<Vector3> points(mesh->GetNumberOfPoints());
-  for (std::size_t p = 0; p < points.size(); ++p)
-  {
-    const auto & x = mesh->GetPoints()->ElementAt(p);
-    points[p] = Vector3(x[0], x[1], x[2]);
-  }
-  this->VerifyMesh(points);
-
-  const auto            conversion = this->GetCurve().Line();
-  MeshRadiographOptions options{ m_MinimumRegion, m_MaximumRegion, conversion.scale, conversion.offset };
-  const LoopRunner      loops = this->MakeLoops();
+  const TMesh *               mesh = this->GetInput();
+  const std::vector<Vector3>  points = GetVerifiedPoints();
+  const MeshRadiographOptions options = GetOptions();
+  const LoopRunner            loops = this->MakeLoops();
   m_MeanCellsPassed = 0.0;
   if (m_Method == DRRMethod::Projection)
   {

@@ -29,10 +29,11 @@ struct RadiographModes
 
 /** \brief ProjectMesh with the image's derivatives, in the same pass over the tetrahedra.
  *
- * `derivatives` receives modes.Count() images, one after the other, rows x columns each. Exact derivatives of the
- * integrals where the image has any: it has kinks at the projected edges, and jumps at faces of the outer surface that
+ * `images` are 1 + modes.Count() of rows x columns: the radiograph, then its derivative by each mode. Exact derivatives
+ * of the integrals where the image has any: it has kinks at the projected edges, and jumps at faces of the outer surface that
  * are seen edge-on. Shape modes must have a displacement for each point, density modes a number for each coefficient.
- * Beside the output, memory is needed for one band of rows a thread. */
+ * Beside the output, memory is needed for one band of rows a thread, and for a displacement of each point and shape mode.
+ */
 void
 ProjectMeshDerivatives(const std::vector<Vector3> &  points,
                        const MeshArrays &            cells,
@@ -40,8 +41,7 @@ ProjectMeshDerivatives(const std::vector<Vector3> &  points,
                        const MeshRadiographOptions & options,
                        const RadiographModes &       modes,
                        const LoopRunner &            loops,
-                       float *                       image,
-                       float *                       derivatives);
+                       const std::vector<float *> &  images);
 
 /** \brief The adjoint: for f = sum over the pixels of image * ProjectMesh(...), the derivatives of f.
  *

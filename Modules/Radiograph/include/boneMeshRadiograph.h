@@ -4,12 +4,14 @@
 #ifndef boneMeshRadiograph_h
 #define boneMeshRadiograph_h
 
+#include "boneAttenuation.h"
 #include "boneLoopRunner.h"
 #include "boneMeshArrays.h"
 #include "boneXRayGeometry.h"
 
 #include <cstdint>
 #include <limits>
+#include <string>
 
 namespace bone
 {
@@ -23,6 +25,14 @@ struct MeshRadiographOptions
   double offset{ 0.0 };
   bool   portable{ false }; ///< ProjectMesh: leave the processor's newer instructions alone
 };
+
+/** Why a radiograph cannot be made of this mesh, its density converted as said (None or WaterScaled), and what to do; empty
+ * where it can. */
+std::string
+FindObstacle(const std::vector<Vector3> &  points,
+             const MeshArrays &            cells,
+             const MeshRadiographOptions & options,
+             HUToAttenuation               conversion);
 
 /** \defgroup MeshRadiograph Line integrals through a tetrahedral density model (paper 5)
  *

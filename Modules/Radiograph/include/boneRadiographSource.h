@@ -96,7 +96,13 @@ protected:
   void
   GenerateData() override;
 
-  /** Writes rows x columns line integrals of each view, row by row. */
+  /** The view that an output shows. */
+  virtual unsigned int
+  GetViewOfOutput(unsigned int output) const
+  {
+    return output;
+  }
+  /** Writes rows x columns line integrals of each output, row by row; `views` are the outputs'. */
   virtual void
   ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) = 0;
 

@@ -25,9 +25,9 @@ RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
   Superclass::VerifyPreconditions();
   for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
   {
-    if (this->GetGeometry(i) == nullptr)
+    if (this->GetGeometry(this->GetViewOfOutput(i)) == nullptr)
     {
-      itkExceptionMacro("View " << i << " has no geometry.");
+      itkExceptionMacro("View " << this->GetViewOfOutput(i) << " has no geometry.");
     }
   }
   if (!(m_WaterAttenuation > 0) || !std::isfinite(m_WaterAttenuation))
@@ -58,7 +58,7 @@ RadiographSource<TOutputImage>::GenerateOutputInformation()
 {
   for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
   {
-    const auto &  view = this->GetGeometry(i)->GetView();
+    const auto &  view = this->GetGeometry(this->GetViewOfOutput(i))->GetView();
     const Vector3 axes[3] = { view.detectorU, view.detectorV, view.detectorU.cross(view.detectorV) };
 
     typename TOutputImage::RegionType    region;
@@ -125,7 +125,7 @@ RadiographSource<TOutputImage>::GenerateData()
   std::vector<float *>            pointers;
   for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
   {
-    views.push_back(this->GetGeometry(i)->GetView());
+    views.push_back(this->GetGeometry(this->GetViewOfOutput(i))->GetView());
     integrals.emplace_back(this->GetOutput(i)->GetBufferedRegion().GetNumberOfPixels());
     pointers.push_back(integrals.back().data());
   }

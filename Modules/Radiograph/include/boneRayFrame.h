@@ -73,6 +73,13 @@ public:
   Vector3
   Project(const Vector3 & point) const;
 
+  /** From a displacement in space to (s, column s, row s), in a parallel beam to (s, column, row). */
+  const Eigen::Matrix3d &
+  ToPixel() const
+  {
+    return m_ToPixel;
+  }
+
   /** mu(s) = a + g . x(s) for an affine function of space, as f . t + (f0 + c fc + r fr), whose sign is that of mu
    * where s is within the ray (it is mu times t with a point source). */
   struct DepthLine
@@ -101,7 +108,7 @@ private:
   Vector3 m_StepU;     ///< mm per column
   Vector3 m_StepV;     ///< mm per row
 
-  Eigen::Matrix3d m_ToPixel; ///< from space to (s, s c, s r) or (s, c, r)
+  Eigen::Matrix3d m_ToPixel;
 };
 } // namespace bone
 

@@ -1,14 +1,22 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see.
+// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see for the cell's frame.
 //
-// Along a ray the barycentric coordinates are mu_i = (slope_i v + p_i) / (1 + kappa v) with p_i affine in the pixel. A
-// displacement of the vertices by w_j changes mu_i at a fixed point by -sum_j M_ij mu_j, M_ij = grad mu_i . w_j, and so
-//   dI = sum_ij M_ij K_ij,  K_ij = - integral of (d rho / d mu_i) mu_j
-//                                  + rho mu_j / (d mu_i / ds) at the exit if that is through face i - at the entry ...
-// with d mu_i / dz = -slope_i (1 + kappa v) on face i. As sum_i M_ij = 0, K_0j is subtracted from the others.
-// Integrals along the chord are Gauss-Lobatto's: its ends are needed anyway.
+// The rays of a row (one eta) lie in a plane with coordinates X = (1 + kappa z) xi and z, where a density of degree N is
+// a polynomial of that degree in two variables: for any density, the integral along a ray is a sum over the moments
+//   I_ak = integral of X^a z^k dz,  a + k <= N,
+// times coefficients that are polynomials in eta ("levels" below). The moments serve every density mode.
+//
+// A displacement w of the vertices moves the cell's points by an affine field. Across the ray that is
+// u_X = w_X - kappa xi w_z and u_Y = w_Y - kappa eta w_z, both affine in z along a ray; along it, the cell is stretched
+// by dw_z/dz. With
+//   G_X(phi) = - integral of (d rho / dX) phi dz + rho (1 + kappa z) phi (dv/dxi of the face's plane), exit less entry,
+// and G_Y alike, the cell's integral I changes by the sum of G(1), G(z) and I times the field's parts. At one eta these
+// are polynomials in xi, which makes nine functions of the ray for all shape modes, again with coefficients in eta.
+// Rigid motion needs I, G(1) and G(s - middle) alone, which are added up and combined pixel by pixel.
+//
+// The adjoint sums the same functions over the pixels of each row, then by levels over the rows.
 
 namespace bone
 {
@@ -16,80 +24,12 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-template <int TPoints>
-struct Lobatto;
-template <>
-struct Lobatto<2>
-{
-  static constexpr double x[] = { -1.0, 1.0 }, w[] = { 0.5, 0.5 };
-};
-template <>
-struct Lobatto<3>
-{
-  static constexpr double x[] = { -1.0, 0.0, 1.0 }, w[] = { 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0 };
-};
-template <>
-struct Lobatto<4>
-{
-  static constexpr double x[] = { -1.0, -0.44721359549995794, 0.44721359549995794, 1.0 };
-  static constexpr double w[] = { 1.0 / 12.0, 5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0 };
-};
-template <>
-struct Lobatto<5>
-{
-  static constexpr double x[] = { -1.0, -0.65465367070797714, 0.0, 0.65465367070797714, 1.0 };
-  static constexpr double w[] = { 0.05, 49.0 / 180.0, 16.0 / 45.0, 49.0 / 180.0, 0.05 };
-};
-template <>
-struct Lobatto<6>
-{
-  static constexpr double x[] = {
-    -1.0, -0.76505532392946469, -0.28523151648064510, 0.28523151648064510, 0.76505532392946469, 1.0
-  };
-  static constexpr double w[] = { 1.0 / 30.0,          0.18923747814892349, 0.27742918851774318,
-                                  0.27742918851774318, 0.18923747814892349, 1.0 / 30.0 };
-};
-
-/** Multinomials in the coefficients' order, and for each product of degree N of barycentric coordinates one of degree
- * N - 1 and the vertex whose coordinate makes it up. */
-template <int N>
-struct Exponents
-{
-  double multinomial[CoefficientCount(N)]{};
-  int    part[CoefficientCount(N)]{};
-  int    vertex[CoefficientCount(N)]{};
-  constexpr Exponents()
-  {
-    int p = 0;
-    for (int i = N; i >= 0; --i)
-    {
-      for (int j = N - i; j >= 0; --j)
-      {
-        for (int k = N - i - j; k >= 0; --k, ++p)
-        {
-          const int l = N - i - j - k;
-          multinomial[p] = factorial[N] / (factorial[i] * factorial[j] * factorial[k] * factorial[l]);
-        }
-      }
-    }
-    for (int q = 0; N > 0 && q < CoefficientCount(N - 1); ++q)
-    {
-      const int raised[4] = { q, raise.second[q], raise.third[q], raise.third[q] + 1 };
-      for (int v = 0; v < 4; ++v)
-      {
-        part[raised[v]] = q;
-        vertex[raised[v]] = v;
-      }
-    }
-  }
-};
-
 /** function(0), ..., function(TCount - 1), unrolled where it is short. */
 template <int TCount, int TFirst = 0, typename TFunction>
 inline __attribute__((always_inline)) void
 Repeat(const TFunction & function)
 {
-  if constexpr (TCount > 20)
+  if constexpr (TCount > 21)
   {
     for (int i = 0; i < TCount; ++i)
     {
@@ -103,244 +43,574 @@ Repeat(const TFunction & function)
   }
 }
 
-/** mu0^i mu1^j mu2^k mu3^l in the coefficients' order; `below` are those of one degree less. */
-template <int N, typename TLanes>
-inline void
-RaiseProducts(const TLanes (&mu)[4], const TLanes * below, TLanes (&products)[CoefficientCount(N)])
+/** Products X^a z^k with a + k <= N: by a, then by k. */
+template <int N>
+struct PlaneBasis
 {
-  static constexpr Exponents<N> exponents;
-  Repeat<CoefficientCount(N)>([&](int p) { products[p] = below[exponents.part[p]] * mu[exponents.vertex[p]]; });
-}
-
-template <int N, typename TLanes>
-inline void
-Products(const TLanes (&mu)[4], TLanes (&products)[CoefficientCount(N)])
-{
-  if constexpr (N == 0)
+  static constexpr int count = PlaneCount(N);
+  static constexpr int
+  At(int a, int k)
   {
-    products[0] = TLanes{} + 1;
+    return a * (N + 1) - a * (a - 1) / 2 + k;
   }
-  else if constexpr (N == 1)
-  {
-    Repeat<4>([&](int i) { products[i] = mu[i]; });
-  }
-  else
-  {
-    TLanes below[CoefficientCount(N - 1)];
-    Products<N - 1>(mu, below);
-    RaiseProducts<N>(mu, below, products);
-  }
-}
 
-/** A cell's density for derivatives, multinomials and the factor h within. */
-template <typename TReal, int N>
-struct DerivedDensity
-{
-  static constexpr int lower = N > 0 ? N - 1 : 0;
-
-  TReal rate[4][CoefficientCount(lower)]; ///< d rho / d mu_0 / N, and d rho / d mu_i less d rho / d mu_0
-
-  DerivedDensity(const double * coefficients, double scale, double offset)
+  /** products times `first`. */
+  template <typename TLanes>
+  static void
+  Products(const TLanes & first, const TLanes & x, const TLanes & z, TLanes (&products)[count])
   {
-    static constexpr Exponents<lower> exponents;
-    for (int p = 0; p < CoefficientCount(lower); ++p)
+    products[0] = first;
+    for (int a = 0; a <= N; ++a)
     {
-      const int raised[4] = { p, raise.second[p], raise.third[p], raise.third[p] + 1 };
-      for (int i = 0; i < 4; ++i)
+      if (a > 0)
       {
-        const double factor = exponents.multinomial[p] * scale;
-        const double first = factor * coefficients[p];
-        rate[i][p] = static_cast<TReal>(i == 0 ? first + exponents.multinomial[p] * offset
-                                               : (N > 0 ? N * (factor * coefficients[raised[i]] - first) : 0.0));
+        products[At(a, 0)] = products[At(a - 1, 0)] * x;
+      }
+      for (int k = 1; k <= N - a; ++k)
+      {
+        products[At(a, k)] = products[At(a, k - 1)] * z;
+      }
+    }
+  }
+
+  template <typename TReal, typename TLanes>
+  static void
+  Value(const TReal * coefficients, const TLanes & x, const TLanes & z, TLanes & value)
+  {
+    value = TLanes{};
+    for (int a = N; a >= 0; --a)
+    {
+      TLanes inZ = TLanes{} + coefficients[At(a, N - a)];
+      for (int k = N - a - 1; k >= 0; --k)
+      {
+        inZ = inZ * z + coefficients[At(a, k)];
+      }
+      value = value * x + inZ;
+    }
+  }
+};
+
+/** Multiplies a polynomial in z by (1 + kappa z)^times, dropping what would exceed its degree: there is nothing. */
+template <int N>
+inline void
+Magnify(Group kappa, int times, Group (&inZ)[N + 1])
+{
+  for (; times > 0; --times)
+  {
+    for (int k = N; k > 0; --k)
+    {
+      inZ[k] += kappa * inZ[k - 1];
+    }
+  }
+}
+template <int N>
+inline void
+MagnifyAdjoint(Group kappa, int times, Group (&inZ)[N + 1])
+{
+  for (; times > 0; --times)
+  {
+    for (int k = 1; k <= N; ++k)
+    {
+      inZ[k - 1] += kappa * inZ[k];
+    }
+  }
+}
+
+/** The coefficients by moment, levels 0..N of the powers of eta, `stride` apart. */
+template <int N>
+inline void
+SetLevels(const Monomials<N> & monomials, Group kappa, Group * levels, int stride)
+{
+  for (int b = 0; b <= N; ++b)
+  {
+    for (int a = 0; a <= N; ++a)
+    {
+      Group inZ[N + 1] = {};
+      for (int k = 0; k <= N - a - b; ++k)
+      {
+        inZ[k] = monomials.q[a][b][k];
+      }
+      if (a + b <= N)
+      {
+        Magnify<N>(kappa, b, inZ);
+      }
+      for (int k = 0; k <= N - a; ++k)
+      {
+        levels[b * stride + PlaneBasis<N>::At(a, k)] = inZ[k];
+      }
+    }
+  }
+}
+
+/** The transpose. */
+template <int N>
+inline void
+SetLevelsAdjoint(const Group * levels, Group kappa, Monomials<N> & monomials)
+{
+  for (int b = 0; b <= N; ++b)
+  {
+    for (int a = 0; a <= N - b; ++a)
+    {
+      Group inZ[N + 1] = {};
+      for (int k = 0; k <= N - a; ++k)
+      {
+        inZ[k] = levels[b * PlaneBasis<N>::count + PlaneBasis<N>::At(a, k)];
+      }
+      MagnifyAdjoint<N>(kappa, b, inZ);
+      for (int k = 0; k <= N - a - b; ++k)
+      {
+        monomials.q[a][b][k] = inZ[k];
+      }
+    }
+  }
+}
+
+/** The transpose of Blossom: from sums by monomial to sums by Bernstein coefficient, added to `out`. */
+template <int N, int D>
+struct BlossomAdjoint
+{
+  static void
+  Run(Group * out, const Group (&mu)[4][4], int next, int (&exponent)[4], const Monomials<N> & sums)
+  {
+    for (int w = next; w < 4; ++w)
+    {
+      Group in[CoefficientCount(D - 1)] = {};
+      ++exponent[w];
+      BlossomAdjoint<N, D - 1>::Run(in, mu, w, exponent, sums);
+      --exponent[w];
+      for (int p = 0; p < CoefficientCount(D - 1); ++p)
+      {
+        out[p] += mu[w][0] * in[p];
+        out[raise.second[p]] += mu[w][1] * in[p];
+        out[raise.third[p]] += mu[w][2] * in[p];
+        out[raise.third[p] + 1] += mu[w][3] * in[p];
       }
     }
   }
 };
 
-/** What one cell is along the rays of a row; see the top. */
+template <int N>
+struct BlossomAdjoint<N, 0>
+{
+  static void
+  Run(Group * out, const Group (&)[4][4], int, int (&exponent)[4], const Monomials<N> & sums)
+  {
+    out[0] += Multinomial<N>(exponent) * sums.q[exponent[1]][exponent[2]][exponent[3]];
+  }
+};
+
+/** How much rounding may grow: bound of the monomials' magnitudes for control values within [-1, 1]. */
+template <int N>
+inline Group
+Growth(const GroupFrame & frame)
+{
+  Group largest{};
+  for (int i = 0; i < 4; ++i)
+  {
+    const Group reach =
+      Absolute(frame.mu[0][i]) + frame.inPlane[i] + Absolute(frame.mu[3][i]);
+    largest = reach > largest ? reach : largest;
+  }
+  Group growth = Group{} + 1.0;
+  for (int i = 0; i < N; ++i)
+  {
+    growth *= largest;
+  }
+  return growth;
+}
+
+/** From a vertex's displacement as (s, column s, row s) (parallel beam: (s, column, row)) to the frame's X, Y, z. */
+struct VertexMotion
+{
+  Group perX, perY, perZ;
+  Group c0, r0; ///< what a step of s takes of column s and row s
+
+  VertexMotion(const GroupFrame & frame, bool parallel)
+    : perX(1.0 / (parallel ? frame.halfWidth : frame.s0 * frame.halfWidth))
+    , perY(1.0 / (parallel ? frame.halfHeight : frame.s0 * frame.halfHeight))
+    , perZ(1.0 / frame.halfDepth)
+    , c0(parallel ? Group{} : frame.c0)
+    , r0(parallel ? Group{} : frame.r0)
+  {}
+};
+
+/** A displacement in the frame, (X, Y, z), as an affine function of (1, X, Y, z). */
+struct AffineField
+{
+  Group of[3][4];
+};
+
+inline void
+SetField(const GroupFrame & frame, const VertexMotion & motion, const Group (&vertex)[4][3], AffineField & field)
+{
+  field = {};
+  for (int j = 0; j < 4; ++j)
+  {
+    const Group moved[3] = { motion.perX * (vertex[j][1] - motion.c0 * vertex[j][0]),
+                             motion.perY * (vertex[j][2] - motion.r0 * vertex[j][0]),
+                             motion.perZ * vertex[j][0] };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        field.of[axis][k] += frame.mu[k][j] * moved[axis];
+      }
+    }
+  }
+}
+
+inline void
+SetFieldAdjoint(const GroupFrame &   frame,
+                const VertexMotion & motion,
+                const AffineField &  sums,
+                Group (&vertex)[4][3])
+{
+  for (int j = 0; j < 4; ++j)
+  {
+    Group moved[3] = {};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        moved[axis] += frame.mu[k][j] * sums.of[axis][k];
+      }
+    }
+    vertex[j][1] = motion.perX * moved[0];
+    vertex[j][2] = motion.perY * moved[1];
+    vertex[j][0] = motion.perZ * moved[2] - motion.c0 * vertex[j][1] - motion.r0 * vertex[j][2];
+  }
+}
+
+/** The coefficients of the shape functions, see RayFunctions: levels 0..2 of the powers of eta, `stride` apart. */
+inline void
+SetShapeLevels(const AffineField & field, Group kappa, Group * levels, int stride)
+{
+  const Group(&x)[4] = field.of[0];
+  const Group(&y)[4] = field.of[1];
+  const Group(&z)[4] = field.of[2];
+  const Group none{};
+  const Group all[shapeLevels][shapeFunctions] = {
+    { x[0], x[1] - kappa * z[0], x[3], kappa * (x[1] - z[3]), -kappa * z[1], y[0], y[3], y[1], z[3] },
+    { x[2],
+      -kappa * z[2],
+      kappa * x[2],
+      -kappa * kappa * z[2],
+      none,
+      y[2] - kappa * z[0],
+      kappa * (y[2] - z[3]),
+      -kappa * z[1],
+      kappa * z[2] },
+    { none, none, none, none, none, -kappa * z[2], -kappa * kappa * z[2], none, none }
+  };
+  for (int level = 0; level < shapeLevels; ++level)
+  {
+    for (int i = 0; i < shapeFunctions; ++i)
+    {
+      levels[level * stride + i] = all[level][i];
+    }
+  }
+}
+
+inline void
+SetShapeLevelsAdjoint(const Group (&s)[shapeLevels][shapeFunctions], Group kappa, AffineField & field)
+{
+  field.of[0][0] = s[0][0];
+  field.of[0][1] = s[0][1] + kappa * s[0][3];
+  field.of[0][2] = s[1][0] + kappa * s[1][2];
+  field.of[0][3] = s[0][2];
+  field.of[1][0] = s[0][5];
+  field.of[1][1] = s[0][7];
+  field.of[1][2] = s[1][5] + kappa * s[1][6];
+  field.of[1][3] = s[0][6];
+  field.of[2][0] = -kappa * (s[0][1] + s[1][5]);
+  field.of[2][1] = -kappa * (s[0][4] + s[1][7]);
+  field.of[2][2] = -kappa * (s[1][1] + kappa * s[1][3] + s[2][5] + kappa * s[2][6] - s[1][8]);
+  field.of[2][3] = s[0][8] - kappa * (s[0][3] + s[1][6]);
+}
+
+/** Functions of eta with coefficients by level, evaluated all at once for a row. */
+template <typename TReal>
+class RowTable
+{
+public:
+  /** In `memory`, of RowTableSize(count, levels) numbers. */
+  RowTable(TReal * memory, int count, int levels)
+    : m_Blocks((count + lanes - 1) / lanes)
+    , m_Count(count)
+    , m_Levels(levels)
+    , m_Table(memory)
+  {}
+
+  /** Takes one member of a group's table, [level][count]. */
+  void
+  Set(const Group * table, int member)
+  {
+    for (int level = 0; level < m_Levels; ++level, table += m_Count)
+    {
+      TReal * to = m_Table + level * m_Blocks * lanes;
+      for (int i = 0; i < m_Count; ++i)
+      {
+        to[i] = static_cast<TReal>(table[i][member]);
+      }
+      for (int i = m_Count; i < m_Blocks * lanes; ++i)
+      {
+        to[i] = TReal(0);
+      }
+    }
+  }
+
+  void
+  At(TReal eta)
+  {
+    using Lanes = typename Vector<TReal>::Type;
+    const int stride = m_Blocks * lanes;
+    for (int i = 0; i < stride; i += lanes)
+    {
+      Lanes value, next;
+      __builtin_memcpy(&value, m_Table + (m_Levels - 1) * stride + i, sizeof(value));
+      for (int level = m_Levels - 2; level >= 0; --level)
+      {
+        __builtin_memcpy(&next, m_Table + level * stride + i, sizeof(next));
+        value = value * eta + next;
+      }
+      __builtin_memcpy(m_Table + m_Levels * stride + i, &value, sizeof(value));
+    }
+  }
+  const TReal *
+  Values() const
+  {
+    return m_Table + m_Levels * m_Blocks * lanes;
+  }
+
+private:
+  int     m_Blocks;
+  int     m_Count;
+  int     m_Levels;
+  TReal * m_Table; ///< the levels, then the values
+};
+
+template <int N>
+inline void
+SetMonomials(const double * const (&coefficients)[groupSize],
+             Group              scale,
+             Group              offset,
+             const GroupFrame & frame,
+             Monomials<N> &     monomials)
+{
+  Group control[CoefficientCount(N)];
+  LoadControl<N>(coefficients, scale, offset, control);
+  int exponent[4] = { 0, 0, 0, 0 };
+  Blossom<N, N>::Run(control, frame.mu, 0, exponent, monomials);
+}
+
+/** The density of a cell and its rates along X and Y, in this order, in a group's table. */
+template <int N>
+struct DensityTable
+{
+  static constexpr int lower = N > 0 ? PlaneCount(N - 1) : 0;
+  static constexpr int count = PlaneCount(N) + 2 * lower;
+  static constexpr int rateX = PlaneCount(N);
+  static constexpr int rateY = rateX + lower;
+
+  Group levels[N + 1][count];
+
+  void
+  Set(const CellGroup & group, const GroupFrame & frame)
+  {
+    Monomials<N> monomials;
+    SetMonomials<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, frame, monomials);
+    SetLevels<N>(monomials, frame.kappa, levels[0], count);
+    if constexpr (N > 0)
+    {
+      Monomials<N - 1> x, y;
+      for (int a = 0; a < N; ++a)
+      {
+        for (int b = 0; a + b < N; ++b)
+        {
+          for (int k = 0; a + b + k < N; ++k)
+          {
+            x.q[a][b][k] = (a + 1.0) * monomials.q[a + 1][b][k];
+            y.q[a][b][k] = (b + 1.0) * monomials.q[a][b + 1][k];
+          }
+        }
+      }
+      SetLevels<N - 1>(x, frame.kappa, levels[0] + rateX, count);
+      SetLevels<N - 1>(y, frame.kappa, levels[0] + rateY, count);
+      for (int i = rateX; i < count; ++i)
+      {
+        levels[N][i] = Group{};
+      }
+    }
+  }
+};
+
+/** What one cell is along the rays of a row. */
 template <typename TReal>
 struct RayStarts
 {
-  TReal depth[4], depthStep[4]; ///< fronts first, as in Frame
-  TReal p[4], pStep[4];         ///< by vertex
-  TReal slope[4];               ///< by vertex
-  TReal perSlope[4];            ///< 1 / slope of the planes, as in Frame
+  TReal depth[4], depthStep[4];    ///< of the planes, as in Frame
+  TReal perXi[4], perEta[4];       ///< change of these depths
+  TReal xi, xiStep;
   TReal kappa;
+  int   fronts;
 };
 
+/** All that the modes need of eight rays and a cell; see the top. */
 template <typename TReal, int N>
-struct Batch
+struct RayFunctions
 {
   using Lanes = typename Vector<TReal>::Type;
-  Lanes value;                      ///< integral
-  Lanes k[3][4];                    ///< K_ij of vertices i = 1..3
-  Lanes basis[CoefficientCount(N)]; ///< integrals of the products
+  Lanes value;
+  Lanes moment[PlaneCount(N)];
+  Lanes gx, gxz, gy, gyz; ///< G_X(1), G_X(z), G_Y(1), G_Y(z)
+  Lanes shape[shapeFunctions];
 };
 
-/** The pixels at `index` of a row, those below `end`. */
-template <typename TReal, int N>
+/** What a ray meets where it enters or leaves. */
+template <typename TLanes>
+struct RayEnd
+{
+  TLanes depth;
+  TLanes perXi, perEta; ///< of the plane that is met
+  TLanes magnification; ///< 1 + kappa z
+  TLanes z;
+};
+
+template <typename TReal, typename TLanes>
 inline void
-SetBatch(const RayStarts<TReal> & rays,
-         const int (&face)[4],
-         int                                  fronts,
-         const DerivedDensity<TReal, N> &     density,
-         const typename Vector<TReal>::Type & index,
-         TReal                                end,
-         bool                                 withShape,
-         bool                                 withDensity,
-         Batch<TReal, N> &                    batch)
+FindEnds(const RayStarts<TReal> & rays, const TLanes & index, RayEnd<TLanes> & entry, RayEnd<TLanes> & exit)
 {
-  using Lanes = typename Vector<TReal>::Type;
-  constexpr int nodes = (N + 4) / 2; // exact to degree 2 nodes - 3
-  const Lanes   none{};
-
-  Lanes depth[4];
-  for (int i = 0; i < 4; ++i)
-  {
-    depth[i] = rays.depth[i] + rays.depthStep[i] * index;
-  }
-  Lanes entry = depth[0], exit = depth[3];
+  const auto meet = [&](int plane, RayEnd<TLanes> & end) {
+    end.depth = rays.depth[plane] + rays.depthStep[plane] * index;
+    end.perXi = TLanes{} + rays.perXi[plane];
+    end.perEta = TLanes{} + rays.perEta[plane];
+  };
+  meet(0, entry);
+  meet(3, exit);
   for (int i = 1; i < 3; ++i)
   {
-    if (i < fronts)
-    {
-      entry = depth[i] < entry ? depth[i] : entry;
-    }
-    else
-    {
-      exit = depth[i] > exit ? depth[i] : exit;
-    }
-  }
-  const auto hit = (entry > exit) & (index < end);
-  entry = hit ? entry : none;
-  exit = hit ? exit : none;
-  const Lanes perEntry = 1 / (1 + rays.kappa * entry), perExit = 1 / (1 + rays.kappa * exit);
-  const Lanes length = (entry - exit) * (perEntry * perExit);
-  Lanes       from[4], to[4];
-  for (int i = 0; i < 4; ++i)
-  {
-    const Lanes p = rays.p[i] + rays.pStep[i] * index;
-    from[i] = (p + rays.slope[i] * entry) * perEntry;
-    to[i] = (p + rays.slope[i] * exit) * perExit;
-  }
-  Lanes atEntry = none, atExit = none;
-  batch.value = none;
-  // The first node sets what the others add to.
-  Repeat<nodes>([&](int g) {
-    constexpr int below = DerivedDensity<TReal, N>::lower;
-    Lanes         mu[4];
-    for (int i = 0; i < 4; ++i)
-    {
-      const TReal ofStart = TReal(0.5 - 0.5 * Lobatto<nodes>::x[g]), ofEnd = TReal(0.5 + 0.5 * Lobatto<nodes>::x[g]);
-      mu[i] = g == 0 ? from[i] : (g == nodes - 1 ? to[i] : ofStart * from[i] + ofEnd * to[i]);
-    }
-    const Lanes weight = TReal(Lobatto<nodes>::w[g]) * length;
-    Lanes       products[CoefficientCount(below)], rate[4];
-    Products<below>(mu, products);
-    if (withDensity)
-    {
-      Lanes ofDegree[CoefficientCount(N)];
-      if constexpr (N > 0)
-      {
-        RaiseProducts<N>(mu, products, ofDegree);
-      }
-      else
-      {
-        ofDegree[0] = products[0];
-      }
-      Repeat<CoefficientCount(N)>(
-        [&](int p) { batch.basis[p] = g == 0 ? weight * ofDegree[p] : batch.basis[p] + weight * ofDegree[p]; });
-    }
-    for (int i = 0; i < (N > 0 ? 4 : 1); ++i)
-    {
-      Lanes sums[2] = { none, none };
-      Repeat<CoefficientCount(below)>([&](int p) { sums[p % 2] += density.rate[i][p] * products[p]; });
-      rate[i] = sums[0] + sums[1];
-    }
-    Lanes value = rate[0];
-    if constexpr (N > 0)
-    {
-      value += TReal(1.0 / N) * (mu[1] * rate[1] + mu[2] * rate[2] + mu[3] * rate[3]);
-    }
-    batch.value += weight * value;
-    atEntry = g == 0 ? value : atEntry;
-    atExit = value;
-    for (int i = 0; withShape && i < 3; ++i)
-    {
-      Lanes weighted = none;
-      if constexpr (N > 0)
-      {
-        weighted = weight * rate[i + 1];
-      }
-      for (int q = 0; q < 4; ++q)
-      {
-        batch.k[i][q] = g == 0 ? -weighted * mu[q] : batch.k[i][q] - weighted * mu[q];
-      }
-    }
-  });
-  if (!withShape)
-  {
-    return;
-  }
-  // Face terms: positive at the entry since its slope is negative.
-  const Lanes in = hit ? atEntry * perEntry : none, out = hit ? atExit * perExit : none;
-  auto        openEntry = hit, openExit = hit; // where several planes meet, one counts
-  for (int plane = 0; plane < 4; ++plane)
-  {
-    const bool front = plane < fronts;
-    if (!front && plane < 3 && face[plane] == face[3])
-    {
-      continue;
-    }
-    const auto here = front ? (depth[plane] == entry) & openEntry : (depth[plane] == exit) & openExit;
-    openEntry &= front ? ~here : openEntry;
-    openExit &= front ? openExit : ~here;
-    const Lanes at = here ? (front ? in : -out) : none;
-    const Lanes moved = at * rays.perSlope[plane];
-    for (int j = 0; j < 4; ++j)
-    {
-      const Lanes term = moved * (front ? from[j] : to[j]);
-      for (int i = 0; i < 3; ++i)
-      {
-        if (face[plane] == i + 1)
-        {
-          batch.k[i][j] += term;
-        }
-        else if (face[plane] == 0)
-        {
-          batch.k[i][j] -= term;
-        }
-      }
-    }
+    RayEnd<TLanes> other;
+    meet(i, other);
+    RayEnd<TLanes> & end = i < rays.fronts ? entry : exit;
+    const auto       inner = i < rays.fronts ? other.depth < end.depth : other.depth > end.depth;
+    end.depth = inner ? other.depth : end.depth;
+    end.perXi = inner ? other.perXi : end.perXi;
+    end.perEta = inner ? other.perEta : end.perEta;
   }
 }
 
-/** Sets consumer.Slot() and calls consumer.Done(row, column) for all batches of a cell. */
-template <typename TReal, int N, typename TConsumer>
-inline void
-ForEachBatch(const GroupFrame & group,
-             int                member,
-             const Frame &      frame,
-             const double *     coefficients,
-             double             scale,
-             double             offset,
-             bool               withShape,
-             bool               withDensity,
-             TConsumer &        consumer)
+/** `density` is DensityTable's values for the row; rays at `index`, those below `end`. */
+template <typename TReal, int N>
+inline __attribute__((always_inline)) void
+SetFunctions(const RayStarts<TReal> &             rays,
+             const TReal *                        density,
+             const typename Vector<TReal>::Type & index,
+             TReal                                end,
+             bool                                 withShape,
+             RayFunctions<TReal, N> &             functions)
 {
   using Lanes = typename Vector<TReal>::Type;
-  const double                   h = group.halfDepth[member];
-  const DerivedDensity<TReal, N> density(coefficients, h * scale, h * offset);
-  const double                   perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
-  RayStarts<TReal>               rays;
+  using Basis = PlaneBasis<N>;
+  constexpr int points = N / 2 + 1;
+  const Lanes   none{};
+
+  RayEnd<Lanes> entry, exit;
+  FindEnds(rays, index, entry, exit);
+  const auto hit = (entry.depth > exit.depth) & (index < end);
+  entry.depth = hit ? entry.depth : none;
+  exit.depth = hit ? exit.depth : none;
+  const Lanes a = 1 + rays.kappa * entry.depth, b = 1 + rays.kappa * exit.depth;
+  const Lanes inverse = 1 / (a * b);
+  const Lanes length = (entry.depth - exit.depth) * inverse;
+  entry.magnification = b * inverse;
+  exit.magnification = a * inverse;
+  entry.z = -entry.depth * entry.magnification;
+  exit.z = -exit.depth * exit.magnification;
+
+  const Lanes xi = rays.xi + rays.xiStep * index;
+  const Lanes half = TReal(0.5) * length, middle = entry.z + half;
+  for (int g = 0; g < points; ++g)
+  {
+    const Lanes z = middle + TReal(Gauss<points>::x[g]) * half;
+    Lanes       products[Basis::count];
+    Basis::Products(TReal(Gauss<points>::w[g]) * length, (1 + rays.kappa * z) * xi, z, products);
+    Repeat<Basis::count>(
+      [&](int q) { functions.moment[q] = g == 0 ? products[q] : functions.moment[q] + products[q]; });
+  }
+  Lanes value = none;
+  Repeat<Basis::count>([&](int q) { value += density[q] * functions.moment[q]; });
+  functions.value = value;
+  if (!withShape)
+  {
+    functions.gx = functions.gxz = functions.gy = functions.gyz = none;
+    Repeat<shapeFunctions>([&](int q) { functions.shape[q] = none; });
+    return;
+  }
+
+  Lanes gx = none, gxz = none, gy = none, gyz = none;
+  if constexpr (N > 0)
+  {
+    using Table = DensityTable<N>;
+    for (int i = 0; i < N; ++i)
+    {
+      for (int k = 0; k < N - i; ++k)
+      {
+        const TReal x = density[Table::rateX + PlaneBasis<N - 1>::At(i, k)];
+        const TReal y = density[Table::rateY + PlaneBasis<N - 1>::At(i, k)];
+        gx -= x * functions.moment[Basis::At(i, k)];
+        gxz -= x * functions.moment[Basis::At(i, k + 1)];
+        gy -= y * functions.moment[Basis::At(i, k)];
+        gyz -= y * functions.moment[Basis::At(i, k + 1)];
+      }
+    }
+  }
+  Lanes in, out;
+  Basis::Value(density, entry.magnification * xi, entry.z, in);
+  Basis::Value(density, exit.magnification * xi, exit.z, out);
+  in = hit ? in * entry.magnification : none;
+  out = hit ? out * exit.magnification : none;
+  const Lanes inX = in * entry.perXi, inY = in * entry.perEta;
+  const Lanes outX = out * exit.perXi, outY = out * exit.perEta;
+  gx += outX - inX;
+  gy += outY - inY;
+  gxz += outX * exit.z - inX * entry.z;
+  gyz += outY * exit.z - inY * entry.z;
+  functions.gx = gx;
+  functions.gxz = gxz;
+  functions.gy = gy;
+  functions.gyz = gyz;
+  functions.shape[0] = gx;
+  functions.shape[1] = xi * gx;
+  functions.shape[2] = gxz;
+  functions.shape[3] = xi * gxz;
+  functions.shape[4] = xi * (functions.shape[1] + rays.kappa * functions.shape[3] - value);
+  functions.shape[5] = gy;
+  functions.shape[6] = gyz;
+  functions.shape[7] = xi * (gy + rays.kappa * gyz);
+  functions.shape[8] = value;
+}
+
+/** Calls consumer.StartRow(eta), consumer.Take(row, column, functions) and consumer.EndRow(eta) for all rays of a cell.
+ */
+template <typename TReal, int N, typename TConsumer>
+inline void
+ForEachRay(const Frame & frame, const DensityTable<N> & density, int member, bool withShape, TConsumer & consumer)
+{
+  using Lanes = typename Vector<TReal>::Type;
+  TReal           memory[RowTableSize(DensityTable<N>::count, N + 1)];
+  RowTable<TReal> table(memory, DensityTable<N>::count, N + 1);
+  table.Set(density.levels[0], member);
+  RayStarts<TReal> rays;
   rays.kappa = static_cast<TReal>(frame.kappa);
+  rays.fronts = frame.fronts;
   for (int i = 0; i < 4; ++i)
   {
     rays.depthStep[i] = static_cast<TReal>(frame.depth[i][1]);
-    rays.perSlope[i] = static_cast<TReal>(1.0 / group.slope[frame.face[i]][member]);
-    rays.slope[i] = static_cast<TReal>(group.slope[i][member]);
-    rays.pStep[i] = static_cast<TReal>(group.mu[1][i][member] * perWidth);
+    rays.perXi[i] = static_cast<TReal>(frame.depth[i][1] * frame.halfWidth);
+    rays.perEta[i] = static_cast<TReal>(frame.depth[i][2] * frame.halfHeight);
   }
+  const double xiPerColumn = 1.0 / frame.halfWidth, etaPerRow = 1.0 / frame.halfHeight;
+  rays.xiStep = static_cast<TReal>(xiPerColumn);
   const Lanes index = { 0, 1, 2, 3, 4, 5, 6, 7 };
   for (int block = frame.firstRow; block < frame.endRow; block += lanes)
   {
@@ -348,147 +618,218 @@ ForEachBatch(const GroupFrame & group,
     SetRowRuns(frame, block, runs);
     for (int j = 0; j < lanes && block + j < frame.endRow; ++j)
     {
+      if (runs.count[j] <= 0)
+      {
+        continue;
+      }
       const double dr = block + j - frame.r0, dc = runs.first[j] - frame.c0;
       for (int i = 0; i < 4; ++i)
       {
         const double(&depth)[3] = frame.depth[i];
         rays.depth[i] = static_cast<TReal>(depth[0] + depth[1] * dc + depth[2] * dr);
-        rays.p[i] = static_cast<TReal>(group.mu[0][i][member] + group.mu[1][i][member] * perWidth * dc +
-                                       group.mu[2][i][member] * perHeight * dr);
       }
+      rays.xi = static_cast<TReal>(dc * xiPerColumn);
+      const auto eta = static_cast<TReal>(dr * etaPerRow);
+      table.At(eta);
+      consumer.StartRow(eta);
       for (int i = 0; i < runs.count[j]; i += lanes)
       {
-        SetBatch<TReal, N>(rays,
-                           frame.face,
-                           frame.fronts,
-                           density,
-                           index + static_cast<TReal>(i),
-                           static_cast<TReal>(runs.count[j]),
-                           withShape,
-                           withDensity,
-                           consumer.Slot());
-        consumer.Done(block + j, runs.first[j] + i);
+        RayFunctions<TReal, N> functions;
+        SetFunctions<TReal, N>(rays,
+                               table.Values(),
+                               index + static_cast<TReal>(i),
+                               static_cast<TReal>(runs.count[j]),
+                               withShape,
+                               functions);
+        consumer.Take(block + j, runs.first[j] + i, functions);
       }
+      consumer.EndRow(eta);
     }
   }
 }
 
-/** Gathers batches of a cell and adds them to the planes, plane by plane. */
+/** The modes' tables of a group of cells, in the task's scratch memory. */
+template <int N>
+struct ModeTables
+{
+  static constexpr int each = PlaneCount(N);
+
+  Group * density; ///< [level][mode][moment]
+  Group * shape;   ///< [level][mode][function]
+  void *  rows;    ///< for the row tables of one member
+
+  ModeTables(const Derivatives & derivatives)
+    : density(static_cast<Group *>(derivatives.scratch))
+    , shape(density + (N + 1) * each * derivatives.densityModes)
+    , rows(shape + shapeLevels * shapeFunctions * derivatives.shapeModes)
+  {}
+
+  void
+  Set(const CellGroup & group, const GroupFrame & frame, const Derivatives & derivatives)
+  {
+    for (int m = 0; m < derivatives.densityModes; ++m)
+    {
+      for (int g = 0; g < group.count; ++g)
+      {
+        const double * const start = derivatives.density[m] + derivatives.coefficient[g];
+        for (int p = 0; p < CoefficientCount(N); p += lanes)
+        {
+          __builtin_prefetch(start + p);
+        }
+      }
+    }
+    for (int m = 0; m < derivatives.densityModes; ++m)
+    {
+      const double * coefficients[groupSize];
+      for (int g = 0; g < groupSize; ++g)
+      {
+        coefficients[g] = derivatives.density[m] + derivatives.coefficient[g < group.count ? g : 0];
+      }
+      Monomials<N> monomials;
+      SetMonomials<N>(coefficients, frame.halfDepth * group.scale, Group{}, frame, monomials);
+      SetLevels<N>(monomials, frame.kappa, density + m * each, each * derivatives.densityModes);
+    }
+    const VertexMotion motion(frame, group.parallel);
+    for (int m = 0; m < derivatives.shapeModes; ++m)
+    {
+      Group vertex[4][3] = {};
+      for (int g = 0; g < group.count; ++g)
+      {
+        for (int i = 0; i < 12; ++i)
+        {
+          vertex[i / 3][i % 3][g] = derivatives.shape[g][i / 3][3 * m + i % 3];
+        }
+      }
+      AffineField field;
+      SetField(frame, motion, vertex, field);
+      SetShapeLevels(field, frame.kappa, shape + m * shapeFunctions, shapeFunctions * derivatives.shapeModes);
+    }
+  }
+};
+
+/** Adds a cell's integrals and derivatives to the planes. */
 template <typename TReal, int N>
 class PlaneAdder
 {
 public:
   using Lanes = typename Vector<TReal>::Type;
 
-  PlaneAdder(const Derivatives & derivatives, const Band & band)
+  PlaneAdder(const Derivatives & derivatives, const Band & band, const ModeTables<N> & tables)
     : m_Derivatives(derivatives)
     , m_Band(band)
-    , m_Shape(reinterpret_cast<TReal *>(derivatives.scratch))
-    , m_Density(m_Shape + 12 * derivatives.shapeModes)
+    , m_Density(static_cast<TReal *>(tables.rows), PlaneCount(N) * derivatives.densityModes, N + 1)
+    , m_Shape(static_cast<TReal *>(tables.rows) + RowTableSize(PlaneCount(N) * derivatives.densityModes, N + 1),
+              shapeFunctions * derivatives.shapeModes,
+              shapeLevels)
   {}
 
-  /** Takes the modes of one cell of the group. */
   void
-  SetModes(int member, double scale)
+  Set(const ModeTables<N> & tables, const GroupFrame & frame, const VertexMotion & motion, int member)
   {
-    static constexpr Exponents<N> exponents;
-    for (int i = 0; i < 12 * m_Derivatives.shapeModes; ++i)
-    {
-      m_Shape[i] = static_cast<TReal>(m_Derivatives.shape[member][i]);
-    }
-    for (int m = 0; m < m_Derivatives.densityModes; ++m)
-    {
-      const double * mode = m_Derivatives.density[m] + m_Derivatives.coefficient[member];
-      for (int p = 0; p < CoefficientCount(N); ++p)
-      {
-        m_Density[m * CoefficientCount(N) + p] = static_cast<TReal>(scale * exponents.multinomial[p] * mode[p]);
-      }
-    }
+    m_Density.Set(tables.density, member);
+    m_Shape.Set(tables.shape, member);
+    m_PerX = static_cast<TReal>(motion.perX[member]);
+    m_PerY = static_cast<TReal>(motion.perY[member]);
+    m_Offset = static_cast<TReal>(frame.s0[member] - m_Derivatives.middle);
+    m_PerZ = static_cast<TReal>(frame.halfDepth[member]);
   }
 
-  Batch<TReal, N> &
-  Slot()
+  void
+  StartRow(TReal eta)
   {
-    return m_Batches[m_Count];
+    m_Density.At(eta);
+    m_Shape.At(eta);
   }
   void
-  Done(int row, int column)
-  {
-    m_Out[m_Count++] = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
-    if (m_Count == capacity)
-    {
-      Flush();
-    }
-  }
+  EndRow(TReal)
+  {}
   void
-  Flush()
+  Take(int row, int column, const RayFunctions<TReal, N> & functions)
   {
-    std::ptrdiff_t plane = 0;
-    for (int b = 0; b < m_Count; ++b)
+    float * out = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
+    Accumulate(out, functions.value);
+    if (m_Derivatives.pose)
     {
-      Accumulate(m_Out[b], m_Batches[b].value);
+      const Lanes x = m_PerX * functions.gx, y = m_PerY * functions.gy;
+      Accumulate(Next(out), x);
+      Accumulate(Next(out), y);
+      Accumulate(Next(out), m_Offset * x + m_PerZ * (m_PerX * functions.gxz));
+      Accumulate(Next(out), m_Offset * y + m_PerZ * (m_PerY * functions.gyz));
     }
-    for (int m = 0; m < m_Derivatives.shapeModes; ++m)
-    {
-      plane += m_Derivatives.plane;
-      AddPlane<12>(m_Shape + 12 * m, plane, [](const Batch<TReal, N> & batch) { return &batch.k[0][0]; });
-    }
-    for (int m = 0; m < m_Derivatives.densityModes; ++m)
-    {
-      plane += m_Derivatives.plane;
-      AddPlane<CoefficientCount(N)>(
-        m_Density + m * CoefficientCount(N), plane, [](const Batch<TReal, N> & batch) { return batch.basis; });
-    }
-    m_Count = 0;
+    AddModes<shapeFunctions>(m_Shape.Values(), functions.shape, m_Derivatives.shapeModes, out);
+    AddModes<PlaneCount(N)>(m_Density.Values(), functions.moment, m_Derivatives.densityModes, out);
   }
 
 private:
-  template <int TCount, typename TTerms>
-  void
-  AddPlane(const TReal * factors, std::ptrdiff_t plane, const TTerms & termsOf)
+  float *
+  Next(float *& out) const
   {
-    Lanes factor[TCount];
-    Repeat<TCount>([&](int q) { factor[q] = Lanes{} + factors[q]; });
-    for (int b = 0; b < m_Count; ++b)
+    return out += m_Derivatives.plane;
+  }
+  template <int TCount>
+  void
+  AddModes(const TReal * factors, const Lanes (&terms)[TCount], int modes, float *& out) const
+  {
+    for (int m = 0; m < modes; ++m, factors += TCount)
     {
-      const Lanes * terms = termsOf(m_Batches[b]);
-      Lanes         sums[2] = {};
-      Repeat<TCount>([&](int q) { sums[q % 2] += factor[q] * terms[q]; });
-      Accumulate(m_Out[b] + plane, sums[0] + sums[1]);
+      Lanes sum{};
+      Repeat<TCount>([&](int q) { sum += factors[q] * terms[q]; });
+      Accumulate(Next(out), sum);
     }
   }
 
-  static constexpr int capacity = N <= 3 ? 16 : 4; ///< what the first-level cache holds
-  const Derivatives &  m_Derivatives;
-  const Band &         m_Band;
-  TReal *              m_Shape;
-  TReal *              m_Density;
-  Batch<TReal, N>      m_Batches[capacity];
-  float *              m_Out[capacity];
-  int                  m_Count{ 0 };
+  const Derivatives & m_Derivatives;
+  const Band &        m_Band;
+  RowTable<TReal>     m_Density;
+  RowTable<TReal>     m_Shape;
+  TReal               m_PerX, m_PerY; ///< see VertexMotion
+  TReal               m_Offset, m_PerZ; ///< s - middle = offset + perZ z
 };
 
-template <typename TReal, int N>
-void
-DeriveMember(const CellGroup &   group,
-             const GroupFrame &  groupFrame,
-             int                 member,
-             const Frame &       frame,
-             const Derivatives & derivatives,
-             const Band &        band)
+/** Calls function(member, frame, exact) for the cells of the group that the band sees; `exact` where they need double
+ * precision. */
+template <int N, typename TFunction>
+inline void
+ForEachSeen(const CellGroup & group, const GroupFrame & groupFrame, const Band & band, const TFunction & function)
 {
-  PlaneAdder<TReal, N> adder(derivatives, band);
-  adder.SetModes(member, groupFrame.halfDepth[member] * group.scale);
-  ForEachBatch<TReal, N>(groupFrame,
-                         member,
-                         frame,
-                         group.coefficients[member],
-                         group.scale,
-                         group.offset,
-                         derivatives.shapeModes > 0,
-                         derivatives.densityModes > 0,
-                         adder);
-  adder.Flush();
+  constexpr double largestGrowth = 64;
+  const Group      growth = Growth<N>(groupFrame);
+  for (int g = 0; g < group.count; ++g)
+  {
+    Frame frame;
+    if (PlaceFrame(groupFrame, g, band, frame) && SetPlanes(groupFrame, g, frame))
+    {
+      function(g, frame, frame.steep || !(growth[g] <= largestGrowth));
+    }
+  }
+}
+
+template <int N>
+void
+DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & band)
+{
+  GroupFrame groupFrame;
+  SetGroupFrame(group, groupFrame);
+  DensityTable<N> density;
+  density.Set(group, groupFrame);
+  ModeTables<N> tables(derivatives);
+  tables.Set(group, groupFrame, derivatives);
+  const VertexMotion motion(groupFrame, group.parallel);
+  const bool         withShape = derivatives.pose || derivatives.shapeModes > 0;
+  ForEachSeen<N>(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
+    if (exact)
+    {
+      PlaneAdder<double, N> adder(derivatives, band, tables);
+      adder.Set(tables, groupFrame, motion, member);
+      ForEachRay<double, N>(frame, density, member, withShape, adder);
+    }
+    else
+    {
+      PlaneAdder<float, N> adder(derivatives, band, tables);
+      adder.Set(tables, groupFrame, motion, member);
+      ForEachRay<float, N>(frame, density, member, withShape, adder);
+    }
+  });
 }
 
 inline void
@@ -517,117 +858,137 @@ Sum(const TLanes & values)
   return sum;
 }
 
-/** Sums batches times the band's weights. */
+/** The functions of a group's rays times the band's weights, summed by levels. */
+template <int N>
+struct LevelSums
+{
+  Group moment[N + 1][PlaneCount(N)]{};
+  Group shape[shapeLevels][shapeFunctions]{};
+};
+
+/** Sums functions times weights over the rays of a cell. */
 template <typename TReal, int N>
-class BatchSummer
+class RaySummer
 {
 public:
   using Lanes = typename Vector<TReal>::Type;
 
-  BatchSummer(const Band & band, bool withShape)
+  RaySummer(const Band & band, bool withShape)
     : m_Band(band)
     , m_WithShape(withShape)
   {}
 
-  Batch<TReal, N> &
-  Slot()
+  void
+  StartRow(TReal)
   {
-    return m_Batch;
+    for (Lanes & sum : m_Row)
+    {
+      sum = Lanes{};
+    }
   }
   void
-  Done(int row, int column)
+  Take(int row, int column, const RayFunctions<TReal, N> & functions)
   {
     Lanes weights;
     LoadWeights(m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column, weights);
-    for (int p = 0; p < CoefficientCount(N); ++p)
+    Repeat<moments>([&](int q) { m_Row[q] += weights * functions.moment[q]; });
+    if (m_WithShape)
     {
-      m_Basis[p] += weights * m_Batch.basis[p];
-    }
-    for (int q = 0; m_WithShape && q < 12; ++q)
-    {
-      m_Positions[q] += weights * m_Batch.k[q / 4][q % 4];
+      Repeat<shapeFunctions>([&](int q) { m_Row[moments + q] += weights * functions.shape[q]; });
     }
   }
   void
-  Write(double scale, double * basis, double * positions) const
+  EndRow(TReal eta)
   {
-    static constexpr Exponents<N> exponents;
-    for (int p = 0; p < CoefficientCount(N); ++p)
+    TReal power = 1;
+    for (int level = 0; level < levels; ++level, power *= eta)
     {
-      basis[p] = scale * exponents.multinomial[p] * Sum(m_Basis[p]);
+      Repeat<moments>([&](int q) { m_Levels[level][q] += power * m_Row[q]; });
+      if (m_WithShape && level < shapeLevels)
+      {
+        Repeat<shapeFunctions>([&](int q) { m_Levels[level][moments + q] += power * m_Row[moments + q]; });
+      }
     }
-    for (int q = 0; m_WithShape && q < 12; ++q)
+  }
+  void
+  Write(int member, LevelSums<N> & sums) const
+  {
+    for (int level = 0; level <= N; ++level)
     {
-      positions[q] = Sum(m_Positions[q]);
+      for (int q = 0; q < moments; ++q)
+      {
+        sums.moment[level][q][member] = Sum(m_Levels[level][q]);
+      }
+    }
+    for (int level = 0; level < shapeLevels; ++level)
+    {
+      for (int q = 0; q < shapeFunctions; ++q)
+      {
+        sums.shape[level][q][member] = Sum(m_Levels[level][moments + q]);
+      }
     }
   }
 
 private:
-  const Band &    m_Band;
-  bool            m_WithShape;
-  Batch<TReal, N> m_Batch{};
-  Lanes           m_Basis[CoefficientCount(N)] = {};
-  Lanes           m_Positions[12] = {};
+  static constexpr int moments = PlaneCount(N);
+  static constexpr int levels = N + 1 > shapeLevels ? N + 1 : shapeLevels;
+
+  const Band & m_Band;
+  bool         m_WithShape;
+  Lanes        m_Row[moments + shapeFunctions];
+  Lanes        m_Levels[levels][moments + shapeFunctions] = {};
 };
-
-template <typename TReal, int N>
-void
-AdjoinMember(const CellGroup &  group,
-             const GroupFrame & groupFrame,
-             int                member,
-             const Frame &      frame,
-             const Adjoint &    adjoint,
-             const Band &       band)
-{
-  const bool            withShape = adjoint.positions[member] != nullptr;
-  BatchSummer<TReal, N> summer(band, withShape);
-  ForEachBatch<TReal, N>(
-    groupFrame, member, frame, group.coefficients[member], group.scale, group.offset, withShape, true, summer);
-  summer.Write(groupFrame.halfDepth[member], adjoint.basis[member], adjoint.positions[member]);
-}
-
-/** Calls function(member, frame) for the cells of the group that the band sees. */
-template <typename TFunction>
-inline void
-ForEachSeen(CellGroup & group, GroupFrame & groupFrame, const Band & band, const TFunction & function)
-{
-  Complete(group);
-  SetGroupFrame(group, groupFrame);
-  for (int g = 0; g < group.count; ++g)
-  {
-    Frame frame;
-    if (PlaceFrame(groupFrame, g, band, frame) && SetPlanes(groupFrame, g, frame))
-    {
-      function(g, frame);
-    }
-  }
-}
-
-template <int N>
-void
-DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & band)
-{
-  GroupFrame groupFrame;
-  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame) {
-    frame.steep ? DeriveMember<double, N>(group, groupFrame, member, frame, derivatives, band)
-                : DeriveMember<float, N>(group, groupFrame, member, frame, derivatives, band);
-  });
-}
 
 template <int N>
 void
 AdjoinOfDegree(CellGroup & group, const Adjoint & adjoint, const Band & band)
 {
   GroupFrame groupFrame;
-  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame) {
-    frame.steep ? AdjoinMember<double, N>(group, groupFrame, member, frame, adjoint, band)
-                : AdjoinMember<float, N>(group, groupFrame, member, frame, adjoint, band);
+  SetGroupFrame(group, groupFrame);
+  DensityTable<N> density;
+  density.Set(group, groupFrame);
+  LevelSums<N> sums;
+  const bool   withShape = adjoint.positions[0] != nullptr;
+  ForEachSeen<N>(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
+    if (exact)
+    {
+      RaySummer<double, N> summer(band, withShape);
+      ForEachRay<double, N>(frame, density, member, withShape, summer);
+      summer.Write(member, sums);
+    }
+    else
+    {
+      RaySummer<float, N> summer(band, withShape);
+      ForEachRay<float, N>(frame, density, member, withShape, summer);
+      summer.Write(member, sums);
+    }
   });
+
+  Monomials<N> monomials;
+  SetLevelsAdjoint<N>(sums.moment[0], groupFrame.kappa, monomials);
+  Group basis[CoefficientCount(N)] = {}, vertex[4][3];
+  int   exponent[4] = { 0, 0, 0, 0 };
+  BlossomAdjoint<N, N>::Run(basis, groupFrame.mu, 0, exponent, monomials);
+  AffineField field;
+  SetShapeLevelsAdjoint(sums.shape, groupFrame.kappa, field);
+  SetFieldAdjoint(groupFrame, VertexMotion(groupFrame, group.parallel), field, vertex);
+  for (int g = 0; g < group.count; ++g)
+  {
+    for (int p = 0; p < CoefficientCount(N); ++p)
+    {
+      adjoint.basis[g][p] = groupFrame.halfDepth[g] * basis[p][g];
+    }
+    for (int i = 0; withShape && i < 12; ++i)
+    {
+      adjoint.positions[g][i] = vertex[i / 3][i % 3][g];
+    }
+  }
 }
 
 inline void
 DeriveCells(CellGroup & group, const Derivatives & derivatives, const Band & band)
 {
+  Complete(group);
   using Function = void (*)(CellGroup &, const Derivatives &, const Band &);
   constexpr Function byDegree[] = { DeriveOfDegree<0>, DeriveOfDegree<1>, DeriveOfDegree<2>,
                                     DeriveOfDegree<3>, DeriveOfDegree<4>, DeriveOfDegree<5>,
@@ -638,6 +999,7 @@ DeriveCells(CellGroup & group, const Derivatives & derivatives, const Band & ban
 inline void
 AdjoinCells(CellGroup & group, const Adjoint & adjoint, const Band & band)
 {
+  Complete(group);
   using Function = void (*)(CellGroup &, const Adjoint &, const Band &);
   constexpr Function byDegree[] = { AdjoinOfDegree<0>, AdjoinOfDegree<1>, AdjoinOfDegree<2>,
                                     AdjoinOfDegree<3>, AdjoinOfDegree<4>, AdjoinOfDegree<5>,

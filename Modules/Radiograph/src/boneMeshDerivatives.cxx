@@ -101,6 +101,78 @@ RatesAlong(const AffineBarycentric & mu, const RayFrame & rays, int column, int 
   return mu.gradient * rays.Direction(column, row);
 }
 
+/** Moves a point, mm per unit. */
+Vector3
+PoseVelocity(int mode, const Vector3 & fromCentre)
+{
+  const Vector3 axis = Vector3::Unit(mode % 3);
+  return mode < 3 ? axis : Vector3(axis.cross(fromCentre));
+}
+
+/** The derivative by a rigid motion as a combination of the four that the kernels make: along the ray of pixel
+ * (column, row) a point at parameter s moves by a + (s - middle) b. Of that the part across the ray counts, in columns
+ * and rows times s (parallel beam: in columns and rows), and that along the ray of b, which stretches the mesh. */
+class PoseCombination
+{
+public:
+  PoseCombination(const RayFrame & rays, const Vector3 & centre, double middle, int mode)
+    : m_Parallel(rays.IsParallel())
+  {
+    const auto at = [&](double column, double row) {
+      const Vector3   direction = rays.Direction(column, row);
+      const Vector3   x = rays.Origin(column, row) + middle * direction - centre;
+      Eigen::Matrix<double, 3, 2> moved;
+      moved.col(0) = rays.ToPixel() * PoseVelocity(mode, x);
+      moved.col(1) = rays.ToPixel() * (PoseVelocity(mode, x + direction) - PoseVelocity(mode, x));
+      return moved;
+    };
+    m_AtZero = at(0, 0);
+    m_PerColumn = at(1, 0) - m_AtZero;
+    m_PerRow = at(0, 1) - m_AtZero;
+  }
+
+  /** Adds the combination of the image and the derivatives that follow it, `plane` apart, at the row's pixels. */
+  void
+  Add(int row, int columns, const float * image, std::ptrdiff_t plane, float * sum) const
+  {
+    // Quadratic in the column: the part along columns, then that along rows, of a and of b.
+    const Eigen::Matrix<double, 3, 2> start = m_AtZero + row * m_PerRow;
+    const double                      along = m_Parallel ? 0.0 : 1.0;
+    for (int k = 0; k < projection::posePlanes; ++k)
+    {
+      const int    part = k / 2, axis = 1 + k % 2;
+      const double shift = along * (axis == 1 ? 0.0 : row), perShift = along * (axis == 1 ? 1.0 : 0.0);
+      const double step0 = start(0, part), step1 = m_PerColumn(0, part);
+      const auto   c0 = static_cast<float>(start(axis, part) - shift * step0);
+      const auto   c1 = static_cast<float>(m_PerColumn(axis, part) - shift * step1 - perShift * step0);
+      const auto   c2 = static_cast<float>(-perShift * step1);
+      AddProduct(c0, c1, c2, columns, image + (k + 1) * plane, sum);
+    }
+    AddProduct(static_cast<float>(start(0, 1)), static_cast<float>(m_PerColumn(0, 1)), 0.0f, columns, image, sum);
+  }
+
+private:
+  /** sum[c] += (c0 + c1 c + c2 c^2) from[c]. */
+  static void
+  AddProduct(float c0, float c1, float c2, int columns, const float * from, float * sum)
+  {
+    for (int c = 0; c < columns; ++c)
+    {
+      const auto x = static_cast<float>(c);
+      sum[c] += (c0 + x * (c1 + x * c2)) * from[c];
+    }
+  }
+
+  bool                        m_Parallel;
+  Eigen::Matrix<double, 3, 2> m_AtZero, m_PerColumn, m_PerRow; ///< (s, s column, s row) of a and b
+};
+
+/** Memory aligned for vectors. */
+struct alignas(64) Aligned
+{
+  unsigned char bytes[64];
+};
+
 class DerivativeProjector
 {
 public:
@@ -114,7 +186,6 @@ public:
     , m_Options(options)
     , m_Modes(modes)
     , m_Projected(points, cells, view, options, std::clamp(view.size[1] / 8, 8, 64))
-    , m_ShapeModes((modes.pose ? poseModes : 0) + static_cast<int>(modes.shape.size()))
   {
     for (const auto & mode : modes.density)
     {
@@ -123,65 +194,67 @@ public:
   }
 
   void
-  Run(const LoopRunner & loops, float * image, float * derivatives)
-  {
-    m_Projected.Prepare(loops.prepare);
-    loops.draw(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, image, derivatives); });
-  }
+  Run(const LoopRunner & loops, const std::vector<float *> & images);
 
 private:
-  Vector3
-  Displacement(int mode, IdType point) const;
-  void
-  SetShape(std::size_t t, double * shape) const;
+  /** Where a band's derivatives lie, after the image: the kernels' four of the pose, shape, density; and the image and
+   * the pose's six of the cells that the kernels cannot take. */
+  int
+  ShapePlane() const
+  {
+    return 1 + (m_Modes.pose ? projection::posePlanes : 0);
+  }
+  int
+  DensityPlane() const
+  {
+    return ShapePlane() + static_cast<int>(m_Modes.shape.size());
+  }
+  int
+  GeneralPlane() const
+  {
+    return DensityPlane() + static_cast<int>(m_Modes.density.size());
+  }
+  int
+  Planes() const
+  {
+    return GeneralPlane() + (m_Projected.HasGeneral() ? 1 + (m_Modes.pose ? poseModes : 0) : 0);
+  }
   void
   AddGeneral(std::size_t t, const projection::Band & band, std::ptrdiff_t plane) const;
   void
-  DrawBand(std::size_t bandId, float * image, float * derivatives) const;
+  DrawBand(std::size_t bandId, const std::vector<float *> & images) const;
+  void
+  WriteRow(int row, const float * sums, std::ptrdiff_t plane, const std::vector<float *> & images) const;
 
   const std::vector<Vector3> &  m_Points;
   const MeshArrays &            m_Cells;
   const MeshRadiographOptions & m_Options;
   const RadiographModes &       m_Modes;
   ProjectedCells                m_Projected;
-  int                           m_ShapeModes;
+  double                        m_Middle{ 0.0 }; ///< of the points, in s
   std::vector<const double *>   m_Density;
+  std::vector<PoseCombination>  m_Pose;
+  std::vector<Vector3>          m_Displacement; ///< of each point and shape mode, in the rays' coordinates
 };
 
-Vector3
-DerivativeProjector::Displacement(int mode, IdType point) const
-{
-  const int poses = m_Modes.pose ? poseModes : 0;
-  if (mode >= poses)
-  {
-    return m_Modes.shape[mode - poses][point];
-  }
-  const Vector3 axis = Vector3::Unit(mode % 3);
-  return mode < 3 ? axis : Vector3(axis.cross(Vector3(m_Points[point] - m_Modes.poseCentre)));
-}
-
-/** gradient of mu_i . displacement of vertex j, for each mode; 0 for a flat cell. */
 void
-DerivativeProjector::SetShape(std::size_t t, double * shape) const
+DerivativeProjector::Run(const LoopRunner & loops, const std::vector<float *> & images)
 {
-  const Id4 &       v = m_Cells.tetrahedra[t];
-  AffineBarycentric mu;
-  if (m_ShapeModes == 0 || !mu.Set(m_Points[v[0]], m_Points[v[1]], m_Points[v[2]], m_Points[v[3]]))
+  m_Projected.Prepare(loops.prepare);
+  if (m_Modes.pose)
   {
-    std::fill_n(shape, 12 * m_ShapeModes, 0.0);
-    return;
-  }
-  for (int mode = 0; mode < m_ShapeModes; ++mode)
-  {
-    for (int j = 0; j < 4; ++j)
+    m_Middle = m_Projected.MeanParameter();
+    for (int mode = 0; mode < poseModes; ++mode)
     {
-      const Vector3 w = Displacement(mode, v[j]);
-      for (int i = 1; i < 4; ++i)
-      {
-        shape[12 * mode + 4 * (i - 1) + j] = mu.gradient.row(i).dot(w);
-      }
+      m_Pose.emplace_back(m_Projected.Rays(), m_Modes.poseCentre, m_Middle, mode);
     }
   }
+  const std::size_t shapeModes = m_Modes.shape.size();
+  m_Displacement.resize(m_Points.size() * shapeModes);
+  ForEachInBlocks(loops.prepare, m_Displacement.size(), [&](std::size_t i) {
+    m_Displacement[i] = m_Projected.Rays().ToPixel() * m_Modes.shape[i % shapeModes][i / shapeModes];
+  });
+  loops.draw(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, images); });
 }
 
 void
@@ -190,46 +263,56 @@ DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band, st
   const ChordDerivative derivative(m_Projected.Density(), m_Options, t);
   const std::size_t     first = t * BernsteinCount(m_Cells.maximumDegree);
   const int             count = BernsteinCount(m_Cells.degree[t]);
-  std::vector<double>   shape(12 * static_cast<std::size_t>(m_ShapeModes));
-  SetShape(t, shape.data());
   m_Projected.ForEachChord(
     t, band.firstRow, band.endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric & mu) {
       const ChordTerms terms = derivative.At(chord, RatesAlong(mu, m_Projected.Rays(), column, row));
-      float *          out = band.data + (row - band.firstRow) * band.stride + column;
-      *out += static_cast<float>(m_Projected.Density().Integrate(t, chord.entry, chord.exit, chord.length));
-      for (int mode = 0; mode < m_ShapeModes; ++mode)
+      float *          sums = band.data + (row - band.firstRow) * band.stride + column;
+      const auto       add = [&](int to, double value) { sums[to * plane] += static_cast<float>(value); };
+      // The change for displacements of the vertices.
+      const auto change = [&](const auto & displacement) {
+        double sum = 0;
+        for (int q = 0; q < 12; ++q)
+        {
+          sum += terms.k[q] * mu.gradient.row(q / 4 + 1).dot(displacement(m_Cells.tetrahedra[t][q % 4]));
+        }
+        return sum;
+      };
+      add(GeneralPlane(), m_Projected.Density().Integrate(t, chord.entry, chord.exit, chord.length));
+      for (int mode = 0; m_Modes.pose && mode < poseModes; ++mode)
       {
-        out += plane;
-        *out += static_cast<float>(std::inner_product(terms.k, terms.k + 12, shape.data() + 12 * mode, 0.0));
+        add(GeneralPlane() + 1 + mode,
+            change([&](IdType v) { return PoseVelocity(mode, m_Points[v] - m_Modes.poseCentre); }));
       }
-      for (const double * mode : m_Density)
+      for (std::size_t m = 0; m < m_Modes.shape.size(); ++m)
       {
-        out += plane;
-        *out +=
-          static_cast<float>(m_Options.scale * std::inner_product(terms.basis, terms.basis + count, mode + first, 0.0));
+        add(ShapePlane() + static_cast<int>(m), change([&](IdType v) { return m_Modes.shape[m][v]; }));
+      }
+      for (std::size_t m = 0; m < m_Density.size(); ++m)
+      {
+        const double sum = std::inner_product(terms.basis, terms.basis + count, m_Density[m] + first, 0.0);
+        add(DensityPlane() + static_cast<int>(m), m_Options.scale * sum);
       }
     });
 }
 
 void
-DerivativeProjector::DrawBand(std::size_t bandId, float * image, float * derivatives) const
+DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & images) const
 {
-  const RayFrame &       rays = m_Projected.Rays();
-  const int              columns = rays.Columns();
   const int              firstRow = m_Projected.FirstRow(bandId), endRow = m_Projected.EndRow(bandId);
-  const int              stride = columns + projection::lanes;
-  const std::ptrdiff_t   plane = static_cast<std::ptrdiff_t>(stride) * (endRow - firstRow);
-  const std::size_t      planes = 1 + m_Modes.Count();
-  std::vector<float>     sums(planes * plane, 0.0f);
+  const int              columns = m_Projected.Rays().Columns();
+  const std::ptrdiff_t   plane = columns + projection::lanes;
+  const std::ptrdiff_t   stride = plane * Planes();
+  std::vector<float>     sums(stride * (endRow - firstRow), 0.0f);
   const projection::Band band{ sums.data(), stride, firstRow, endRow, columns };
 
-  const int               densityModes = static_cast<int>(m_Density.size());
-  const std::size_t       stepOfShape = 12 * static_cast<std::size_t>(m_ShapeModes);
-  std::vector<double>     shape(projection::groupSize * stepOfShape);
-  std::vector<double>     scratch(projection::DerivativeScratch(m_ShapeModes, densityModes));
+  const std::size_t       shapeModes = m_Modes.shape.size(), densityModes = m_Density.size();
+  std::vector<Aligned>    scratch(
+    projection::DerivativeScratch(shapeModes, densityModes, m_Cells.maximumDegree) / sizeof(Aligned) + 1);
   projection::Derivatives task{};
-  task.shapeModes = m_ShapeModes;
-  task.densityModes = densityModes;
+  task.pose = m_Modes.pose;
+  task.middle = m_Middle;
+  task.shapeModes = static_cast<int>(shapeModes);
+  task.densityModes = static_cast<int>(densityModes);
   task.density = m_Density.data();
   task.plane = plane;
   task.scratch = scratch.data();
@@ -239,28 +322,56 @@ DerivativeProjector::DrawBand(std::size_t bandId, float * image, float * derivat
     [&](projection::CellGroup & group, const std::size_t * ids) {
       for (int g = 0; g < group.count; ++g)
       {
-        SetShape(ids[g], shape.data() + g * stepOfShape);
-        task.shape[g] = shape.data() + g * stepOfShape;
+        for (int i = 0; shapeModes > 0 && i < 4; ++i)
+        {
+          task.shape[g][i] = m_Displacement[m_Cells.tetrahedra[ids[g]][i] * shapeModes].data();
+        }
         task.coefficient[g] = static_cast<std::ptrdiff_t>(ids[g] * BernsteinCount(m_Cells.maximumDegree));
       }
       kernels.derive(group, task, band);
     },
     [&](std::size_t t) { AddGeneral(t, band, plane); });
-
-  const std::size_t  pixels = static_cast<std::size_t>(columns) * rays.Rows();
-  std::vector<float> lengths(columns);
   for (int row = firstRow; row < endRow; ++row)
   {
-    for (int column = 0; column < columns; ++column)
-    {
-      lengths[column] = static_cast<float>(rays.StepLength(column, row));
-    }
-    for (std::size_t m = 0; m < planes; ++m)
-    {
-      const float * from = sums.data() + m * plane + static_cast<std::ptrdiff_t>(row - firstRow) * stride;
-      float *       to = (m == 0 ? image : derivatives + (m - 1) * pixels) + static_cast<std::size_t>(row) * columns;
-      std::transform(lengths.begin(), lengths.end(), from, to, std::multiplies<float>());
-    }
+    WriteRow(row, sums.data() + (row - firstRow) * stride, plane, images);
+  }
+}
+
+/** From a row of sums in s to line integrals. */
+void
+DerivativeProjector::WriteRow(int                          row,
+                              const float *                sums,
+                              std::ptrdiff_t               plane,
+                              const std::vector<float *> & images) const
+{
+  const RayFrame &   rays = m_Projected.Rays();
+  const int          columns = rays.Columns();
+  std::vector<float> lengths(columns), sum(columns);
+  for (int column = 0; column < columns; ++column)
+  {
+    lengths[column] = static_cast<float>(rays.StepLength(column, row));
+  }
+  auto       image = images.begin();
+  const auto write = [&](const float * from) {
+    float * to = *image++ + static_cast<std::size_t>(row) * columns;
+    std::transform(lengths.begin(), lengths.end(), from, to, std::multiplies<float>());
+  };
+  const auto setGeneral = [&](int k) {
+    const float * const from = sums + (GeneralPlane() + k) * plane;
+    m_Projected.HasGeneral() ? std::copy_n(from, columns, sum.data()) : std::fill_n(sum.data(), columns, 0.0f);
+  };
+  setGeneral(0);
+  std::transform(sum.begin(), sum.end(), sums, sum.begin(), std::plus<float>());
+  write(sum.data());
+  for (std::size_t mode = 0; mode < m_Pose.size(); ++mode)
+  {
+    setGeneral(1 + static_cast<int>(mode));
+    m_Pose[mode].Add(row, columns, sums, plane, sum.data());
+    write(sum.data());
+  }
+  for (int from = ShapePlane(); from < GeneralPlane(); ++from)
+  {
+    write(sums + from * plane);
   }
 }
 
@@ -276,7 +387,7 @@ public:
     , m_Cells(cells)
     , m_Options(options)
     , m_Projected(points, cells, view, options, view.size[1])
-    , m_Positions(withPositions ? 12 * cells.tetrahedra.size() : 0, 0.0)
+    , m_Positions(withPositions ? 4 * cells.tetrahedra.size() : 0, Vector3(Vector3::Zero()))
   {}
 
   void
@@ -296,7 +407,7 @@ private:
   ProjectedCells                m_Projected;
   std::vector<float>            m_Weights; ///< the image times the rays' step length
   projection::Band              m_Band{};
-  std::vector<double>           m_Positions; ///< weighted K_ij of each cell
+  std::vector<Vector3>          m_Positions; ///< of each cell and vertex, in space
 };
 
 void
@@ -331,7 +442,7 @@ Backprojector::AddGeneral(std::size_t t, double * coefficients)
       }
       for (int q = 0; q < 12 && !m_Positions.empty(); ++q)
       {
-        m_Positions[12 * t + q] += weight * terms.k[q];
+        m_Positions[4 * t + q % 4] += weight * terms.k[q] * mu.gradient.row(q / 4 + 1).transpose();
       }
     });
 }
@@ -352,13 +463,18 @@ Backprojector::Run(const LoopRunner & loops, const float * image, double * coeff
       ids.begin() + b * block,
       ids.begin() + std::min(cells, (b + 1) * block),
       [&](projection::CellGroup & group, const std::size_t * members) {
-        projection::Adjoint task;
+        projection::Adjoint task{};
         for (int g = 0; g < group.count; ++g)
         {
           task.basis[g] = coefficients + members[g] * stride;
-          task.positions[g] = m_Positions.empty() ? nullptr : m_Positions.data() + 12 * members[g];
+          task.positions[g] = m_Positions.empty() ? nullptr : m_Positions[4 * members[g]].data();
         }
         kernels.adjoin(group, task, m_Band);
+        for (std::size_t i = 0; i < 4 * static_cast<std::size_t>(group.count) && !m_Positions.empty(); ++i)
+        {
+          Vector3 & position = m_Positions[4 * members[i / 4] + i % 4];
+          position = m_Projected.Rays().ToPixel().transpose() * position;
+        }
       },
       [&](std::size_t t) { AddGeneral(t, coefficients + t * stride); });
     const std::size_t end = std::min(cells, (b + 1) * block) * stride;
@@ -370,18 +486,9 @@ void
 Backprojector::GatherPositions(Vector3 * gradient) const
 {
   std::fill_n(gradient, m_Points.size(), Vector3(Vector3::Zero()));
-  for (std::size_t t = 0; t < m_Cells.tetrahedra.size(); ++t)
+  for (std::size_t i = 0; i < m_Positions.size(); ++i)
   {
-    const Id4 &       v = m_Cells.tetrahedra[t];
-    AffineBarycentric mu;
-    if (!mu.Set(m_Points[v[0]], m_Points[v[1]], m_Points[v[2]], m_Points[v[3]]))
-    {
-      continue;
-    }
-    for (int q = 0; q < 12; ++q)
-    {
-      gradient[v[q % 4]] += m_Positions[12 * t + q] * mu.gradient.row(q / 4 + 1).transpose();
-    }
+    gradient[m_Cells.tetrahedra[i / 4][i % 4]] += m_Positions[i];
   }
 }
 } // namespace
@@ -393,10 +500,9 @@ ProjectMeshDerivatives(const std::vector<Vector3> &  points,
                        const MeshRadiographOptions & options,
                        const RadiographModes &       modes,
                        const LoopRunner &            loops,
-                       float *                       image,
-                       float *                       derivatives)
+                       const std::vector<float *> &  images)
 {
-  DerivativeProjector(points, cells, view, options, modes).Run(loops, image, derivatives);
+  DerivativeProjector(points, cells, view, options, modes).Run(loops, images);
 }
 
 void

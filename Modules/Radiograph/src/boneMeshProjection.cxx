@@ -4,9 +4,58 @@
 #include "boneProjectedCells.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 namespace bone
 {
+std::string
+FindObstacle(const std::vector<Vector3> &  points,
+             const MeshArrays &            cells,
+             const MeshRadiographOptions & options,
+             HUToAttenuation               conversion)
+{
+  std::ostringstream text;
+  const auto         finite = [](double value) { return std::isfinite(value); };
+  const bool restricted = options.minimumRegion > MeshRadiographOptions().minimumRegion ||
+                          options.maximumRegion < MeshRadiographOptions().maximumRegion;
+  if (conversion != HUToAttenuation::None && conversion != HUToAttenuation::WaterScaled)
+  {
+    text << "HUToAttenuation is " << conversion
+         << ", which is no line: a polynomial would not stay one. Convert the CT and fit the model to the result "
+            "(AttenuationImageFilter), then leave it at None.";
+  }
+  else if (options.minimumRegion > options.maximumRegion)
+  {
+    text << "MinimumRegion (" << options.minimumRegion << ") is above MaximumRegion (" << options.maximumRegion
+         << "): no tetrahedron would count.";
+  }
+  else if (cells.tetrahedra.empty())
+  {
+    text << "The mesh has no tetrahedra.";
+  }
+  else if (!cells.HasDensity())
+  {
+    text << "The mesh has no density: fit one to a CT first (DensityFitFilter).";
+  }
+  else if (!std::all_of(points.begin(), points.end(), [](const Vector3 & p) { return p.allFinite(); }) ||
+           !std::all_of(cells.coefficients.begin(), cells.coefficients.end(), finite))
+  {
+    text << "A point or a density coefficient of the mesh is not finite.";
+  }
+  else if (restricted && cells.region.empty())
+  {
+    text << "The mesh has no regions to choose from: leave MinimumRegion and MaximumRegion alone.";
+  }
+  else if (conversion != HUToAttenuation::None && cells.quantity != DensityQuantity::HounsfieldUnit &&
+           cells.quantity != DensityQuantity::Unknown)
+  {
+    text << "HUToAttenuation is " << conversion << ", but the mesh's density is in "
+         << DensityQuantityName(cells.quantity) << ": set it to None.";
+  }
+  return text.str();
+}
+
 namespace
 {
 /** Rows of a band: few enough for the cache and for the threads, many enough that few cells lie in two. */

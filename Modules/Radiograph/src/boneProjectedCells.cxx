@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace bone
 {
@@ -36,7 +37,17 @@ ProjectedCells::Prepare(const ParallelFor & parallelFor)
   ForEachInBlocks(parallelFor, m_Points.size(), [&](std::size_t p) { m_Projected[p] = m_Frame.Project(m_Points[p]); });
   m_Rows.resize(m_Cells.tetrahedra.size());
   ForEachInBlocks(parallelFor, m_Rows.size(), [&](std::size_t t) { Locate(t); });
+  m_HasGeneral = std::any_of(
+    m_Rows.begin(), m_Rows.end(), [](const RowRange & range) { return range.path == Path::General; });
   FillBins();
+}
+
+double
+ProjectedCells::MeanParameter() const
+{
+  const double sum = std::accumulate(
+    m_Projected.begin(), m_Projected.end(), 0.0, [](double before, const Vector3 & p) { return before + p[2]; });
+  return m_Projected.empty() ? 0.0 : sum / static_cast<double>(m_Projected.size());
 }
 
 projection::CellGroup
@@ -100,10 +111,7 @@ ProjectedCells::FillBins()
     }
   };
   forEachBin([&](IdType, int bin) { ++m_BinStart[bin + 1]; });
-  for (std::size_t bin = 0; bin < bins; ++bin)
-  {
-    m_BinStart[bin + 1] += m_BinStart[bin];
-  }
+  std::partial_sum(m_BinStart.begin(), m_BinStart.end(), m_BinStart.begin());
   m_BinCells.resize(m_BinStart.back());
   auto next = m_BinStart;
   forEachBin([&](IdType t, int bin) { m_BinCells[next[bin]++] = t; });

@@ -58,6 +58,15 @@ public:
   {
     return std::min(m_Frame.Rows(), FirstRow(band) + m_BandRows);
   }
+  /** Whether there are cells near the source or through the detector, which the kernels cannot take. */
+  bool
+  HasGeneral() const
+  {
+    return m_HasGeneral;
+  }
+  /** Mean of the points' ray parameter s; 0 without points. */
+  double
+  MeanParameter() const;
   /** An empty group for Append. */
   projection::CellGroup
   EmptyGroup() const;
@@ -112,8 +121,9 @@ private:
 
   std::vector<Vector3>     m_Projected; ///< column, row, s of each point
   std::vector<RowRange>    m_Rows;      ///< of each cell
-  std::vector<std::size_t> m_BinStart;  ///< per band, into m_BinCells
-  std::vector<IdType>      m_BinCells;  ///< ascending within a band
+  bool                     m_HasGeneral{ false };
+  std::vector<std::size_t> m_BinStart; ///< per band, into m_BinCells
+  std::vector<IdType>      m_BinCells; ///< ascending within a band
 };
 
 /** Entry and exit depth of a ray and their faces, by the planes' lines at its pixel; false where it misses. */

@@ -40,31 +40,49 @@ struct Band
   int            columns;
 };
 
-/** What is derived from a group's integrals I beside I itself. For a displacement of the cell's vertices j by w_j,
- * dI = sum over i = 1..3, j = 0..3 of (gradient of barycentric coordinate i) . w_j times a function K_ij of the pixel.
- */
+/** What is derived from a group's integrals beside these themselves, one plane each in the order below. Displacements of
+ * vertices are in the coordinates (s, column s, row s), in a parallel beam (s, column, row). */
 struct Derivatives
 {
+  bool                   pose;   ///< four planes: displacement by 1 along columns, along rows, and by s - middle along
+  double                 middle; ///< both
   int                    shapeModes;
-  const double *         shape[groupSize]; ///< of each cell: modes x 3 x 4, gradient i . w_j
+  const double *         shape[groupSize][4]; ///< of each cell and vertex: modes x 3
   int                    densityModes;
   const double * const * density;                ///< coefficients of each mode
   std::ptrdiff_t         coefficient[groupSize]; ///< where each cell's begin
   std::ptrdiff_t         plane;                  ///< floats in the band from one derivative to the next
-  double *               scratch;                ///< DerivativeScratch() numbers
+  void *                 scratch;                ///< DerivativeScratch() bytes, aligned for Group
 };
 
-constexpr std::size_t
-DerivativeScratch(int shapeModes, int densityModes)
+constexpr int posePlanes = 4;
+constexpr int shapeFunctions = 9, shapeLevels = 3; ///< see boneDerivativeKernel.hxx
+
+/** Products of two variables up to a degree. */
+constexpr int
+PlaneCount(int degree)
 {
-  return static_cast<std::size_t>(shapeModes) * 12 + static_cast<std::size_t>(densityModes) * 165;
+  return (degree + 1) * (degree + 2) / 2;
+}
+constexpr std::size_t
+RowTableSize(std::size_t count, std::size_t levels)
+{
+  return (count + lanes - 1) / lanes * lanes * (levels + 1);
+}
+constexpr std::size_t
+DerivativeScratch(std::size_t shapeModes, std::size_t densityModes, int degree)
+{
+  const std::size_t density = PlaneCount(degree) * densityModes, levels = degree + 1;
+  const std::size_t shape = shapeFunctions * shapeModes;
+  return sizeof(double) * (groupSize * (density * levels + shape * shapeLevels) + RowTableSize(density, levels) +
+                           RowTableSize(shape, shapeLevels));
 }
 
 /** Sums over the pixels, of which the band holds the weights. */
 struct Adjoint
 {
   double * basis[groupSize];     ///< of each cell: weight times integral of each Bernstein polynomial; not scaled
-  double * positions[groupSize]; ///< of each cell or null: weight times K_ij, 3 x 4
+  double * positions[groupSize]; ///< of each cell, or all null: 4 vertices x 3, by their displacements as above
 };
 
 /** Each takes 1..groupSize tetrahedra of one degree; what is beyond `count` is filled by the function. */

@@ -26,6 +26,14 @@ struct Monomials
   Group q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
 };
 
+template <int N>
+inline double
+Multinomial(const int (&exponent)[4])
+{
+  return factorial[N] /
+         (factorial[exponent[0]] * factorial[exponent[1]] * factorial[exponent[2]] * factorial[exponent[3]]);
+}
+
 /** From Bernstein coefficients (`in`, of degree D) to monomials: the coefficient of X^a Y^b z^k is a multinomial times
  * the blossom at the columns of `mu`, each as often as its exponent says. `next` is the first column still to use. */
 template <int N, int D>
@@ -55,9 +63,7 @@ struct Blossom<N, 0>
   static void
   Run(const Group * in, const Group (&)[4][4], int, int (&exponent)[4], Monomials<N> & result)
   {
-    const double multinomial = factorial[N] / (factorial[exponent[0]] * factorial[exponent[1]] *
-                                               factorial[exponent[2]] * factorial[exponent[3]]);
-    result.q[exponent[1]][exponent[2]][exponent[3]] = multinomial * in[0];
+    result.q[exponent[1]][exponent[2]][exponent[3]] = Multinomial<N>(exponent) * in[0];
   }
 };
 
@@ -279,19 +285,21 @@ Transpose(const Group (&from)[groupSize], Group * to)
   to[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
-/** Control values times h of the cells of a group. */
+/** scale * coefficients + offset of the cells of a group. */
 template <int N>
 void
-LoadControl(const CellGroup & group, Group halfDepth, Group (&control)[CoefficientCount(N)])
+LoadControl(const double * const (&coefficients)[groupSize],
+            Group scale,
+            Group offset,
+            Group (&control)[CoefficientCount(N)])
 {
   constexpr int count = CoefficientCount(N);
-  const Group   scale = halfDepth * group.scale, offset = halfDepth * group.offset;
   for (int p = 0; p + groupSize <= count; p += groupSize)
   {
     Group rows[groupSize];
     for (int g = 0; g < groupSize; ++g)
     {
-      __builtin_memcpy(rows + g, group.coefficients[g] + p, sizeof(Group));
+      __builtin_memcpy(rows + g, coefficients[g] + p, sizeof(Group));
     }
     Transpose(rows, control + p);
   }
@@ -299,7 +307,7 @@ LoadControl(const CellGroup & group, Group halfDepth, Group (&control)[Coefficie
   {
     for (int g = 0; g < groupSize; ++g)
     {
-      control[p][g] = group.coefficients[g][p];
+      control[p][g] = coefficients[g][p];
     }
   }
   for (Group & value : control)
@@ -314,7 +322,7 @@ void
 SetDensities(const CellGroup & group, const GroupFrame & frame, RayPolynomials<N> & densities)
 {
   Group control[CoefficientCount(N)], largest{};
-  LoadControl<N>(group, frame.halfDepth, control);
+  LoadControl<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, control);
   for (const Group & value : control)
   {
     const Group magnitude = Absolute(value);

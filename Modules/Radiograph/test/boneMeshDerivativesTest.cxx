@@ -132,13 +132,23 @@ struct Images
   std::vector<float> derivatives;
 };
 
+std::vector<float *>
+Pointers(Images & images)
+{
+  std::vector<float *> pointers{ images.image.data() };
+  for (auto image = images.derivatives.begin(); image != images.derivatives.end(); image += images.image.size())
+  {
+    pointers.push_back(&*image);
+  }
+  return pointers;
+}
+
 Images
 Derive(const MeshArrays & mesh, const View & view, const RadiographModes & modes, const MeshRadiographOptions & options)
 {
   const std::size_t pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
   Images            images{ std::vector<float>(pixels, -1), std::vector<float>(pixels * modes.Count(), -1) };
-  ProjectMeshDerivatives(
-    mesh.points, mesh, view, options, modes, loops, images.image.data(), images.derivatives.data());
+  ProjectMeshDerivatives(mesh.points, mesh, view, options, modes, loops, Pointers(images));
   return images;
 }
 
@@ -331,8 +341,7 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
     }
   };
   Images other = images;
-  ProjectMeshDerivatives(
-    mesh.points, mesh, view, {}, modes, { backwards, backwards }, other.image.data(), other.derivatives.data());
+  ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, { backwards, backwards }, Pointers(other));
   EXPECT_EQ(images.derivatives, other.derivatives);
 
   MeshRadiographOptions portable;

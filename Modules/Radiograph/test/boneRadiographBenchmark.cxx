@@ -87,11 +87,16 @@ Derivatives(benchmark::State & state)
     modes.shape.emplace_back(mesh.points);
     modes.density.emplace_back(mesh.coefficients);
   }
-  const std::size_t  pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
-  std::vector<float> image(pixels), derivatives(pixels * modes.Count());
+  const std::size_t    pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
+  std::vector<float>   images(pixels * (1 + modes.Count()));
+  std::vector<float *> pointers;
+  for (std::size_t i = 0; i < images.size(); i += pixels)
+  {
+    pointers.push_back(&images[i]);
+  }
   for (auto _ : state)
   {
-    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, image.data(), derivatives.data());
+    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers);
   }
 }
 

@@ -1,0 +1,187 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+// boneRadiographValidation CT GEOMETRY.json MODEL.vtu...: times radiographs of the models, of the CT by Joseph's method
+// and by ITK's RayCastInterpolateImageFunction, and the first model's derivatives, all with two threads. Prints a
+// "name wall_ms processor_ms" a line, least of the repetitions, then for each model the cells on its rays.
+#include <itkIdentityTransform.h>
+#include <itkRayCastInterpolateImageFunction.h> // before other versions of Eigen than ITK's
+
+#include "boneGeometryIO.h"
+#include "boneImageIO.h"
+#include "boneMeshDerivatives.h"
+#include "boneMeshIO.h"
+#include "boneVoxelDRRImageFilter.h"
+
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <iostream>
+#include <thread>
+
+namespace
+{
+using namespace bone;
+
+void
+OnTwoThreads(std::size_t count, const std::function<void(std::size_t)> & body)
+{
+  std::atomic<std::size_t> next{ 0 };
+  const auto               work = [&]() {
+    for (std::size_t i = next++; i < count; i = next++)
+    {
+      body(i);
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+}
+const LoopRunner loops{ OnTwoThreads, OnTwoThreads };
+
+void
+Time(const std::string & name, int repetitions, const std::function<void()> & work)
+{
+  double wall = 1e30, processor = 1e30;
+  for (int i = 0; i < repetitions; ++i)
+  {
+    const auto         start = std::chrono::steady_clock::now();
+    const std::clock_t ticks = std::clock();
+    work();
+    processor = std::min(processor, 1e3 * static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC);
+    wall = std::min(wall, 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::cout << name << ' ' << wall << ' ' << processor << '\n';
+}
+
+std::size_t
+Pixels(const XRayGeometry::View & view)
+{
+  return static_cast<std::size_t>(view.size[0]) * view.size[1];
+}
+
+void
+TimeModel(const std::string & path, const XRayGeometry::View & view)
+{
+  const MeshArrays   mesh = ReadDensityMesh(path)->GetArrays();
+  std::vector<float> image(Pixels(view));
+  Time("model " + path, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, loops, image.data()); });
+  std::vector<std::int32_t> passed(image.size());
+  WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());
+  double intervals = 0;
+  for (std::int32_t cells : passed)
+  {
+    intervals += cells;
+  }
+  std::cout << "cells " << path << ' ' << mesh.tetrahedra.size() << ' ' << intervals << '\n';
+}
+
+void
+TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
+{
+  const MeshArrays mesh = ReadDensityMesh(path)->GetArrays();
+  RadiographModes  modes;
+  modes.pose = true;
+  for (int m = 0; m < 10; ++m)
+  {
+    modes.shape.emplace_back(mesh.points);
+    modes.density.emplace_back(mesh.coefficients);
+  }
+  std::vector<float>   images(Pixels(view) * (1 + modes.Count()));
+  std::vector<float *> pointers;
+  for (std::size_t i = 0; i < images.size(); i += Pixels(view))
+  {
+    pointers.push_back(&images[i]);
+  }
+  Time("derivatives " + path, 15, [&]() {
+    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers);
+  });
+}
+
+/** ITK's ray caster takes the volume's centre as origin and its axes as x, y, z. */
+void
+TimeRayCaster(const CTImage * ct, const XRayGeometry * geometry, const std::vector<float> & reference)
+{
+  using Interpolator = itk::RayCastInterpolateImageFunction<CTImage, double>;
+  const auto &                             view = geometry->GetView();
+  itk::ContinuousIndex<double, 3>          middle;
+  for (unsigned int k = 0; k < 3; ++k)
+  {
+    middle[k] = 0.5 * (static_cast<double>(ct->GetLargestPossibleRegion().GetSize(k)) - 1);
+  }
+  CTImage::PointType centre;
+  ct->TransformContinuousIndexToPhysicalPoint(middle, centre);
+  const auto inVolume = [&](const Vector3 & x) {
+    CTImage::PointType point;
+    for (unsigned int k = 0; k < 3; ++k)
+    {
+      point[k] = 0;
+      for (unsigned int axis = 0; axis < 3; ++axis)
+      {
+        point[k] += ct->GetDirection()(axis, k) * (x[axis] - centre[axis]);
+      }
+    }
+    return point;
+  };
+  std::vector<float> image(Pixels(view));
+  const auto         cast = [&](std::size_t part) {
+    auto interpolator = Interpolator::New();
+    interpolator->SetInputImage(ct);
+    interpolator->SetTransform(itk::IdentityTransform<double, 3>::New());
+    interpolator->SetFocalPoint(inVolume(view.source));
+    interpolator->SetThreshold(-1e9);
+    for (int row = static_cast<int>(part); row < view.size[1]; row += 16)
+    {
+      for (int column = 0; column < view.size[0]; ++column)
+      {
+        image[static_cast<std::size_t>(row) * view.size[0] + column] =
+          static_cast<float>(interpolator->Evaluate(inVolume(geometry->GetPixelPoint(column, row))));
+      }
+    }
+  };
+  Time("itk", 2, [&]() { OnTwoThreads(16, cast); });
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < image.size(); ++i)
+  {
+    difference += std::abs(static_cast<double>(image[i]) - reference[i]);
+    size += std::abs(static_cast<double>(reference[i]));
+  }
+  std::cout << "itk_difference " << difference / size << '\n';
+}
+} // namespace
+
+int
+main(int argc, char * argv[])
+{
+  if (argc < 4)
+  {
+    std::cerr << "usage: boneRadiographValidation CT GEOMETRY.json MODEL.vtu...\n";
+    return 2;
+  }
+  try
+  {
+    const auto ct = ReadCT(argv[1]);
+    const auto geometry = ReadGeometry(argv[2]).front();
+    for (int i = 3; i < argc; ++i)
+    {
+      TimeModel(argv[i], geometry->GetView());
+    }
+    TimeDerivatives(argv[3], geometry->GetView());
+    auto joseph = VoxelDRRImageFilter<CTImage, CTImage>::New();
+    joseph->SetInput(ct);
+    joseph->SetGeometry(geometry);
+    joseph->SetNumberOfWorkUnits(2);
+    Time("joseph", 3, [&]() {
+      joseph->Modified();
+      joseph->Update();
+    });
+    const float * pixels = joseph->GetOutput()->GetBufferPointer();
+    TimeRayCaster(ct, geometry, std::vector<float>(pixels, pixels + Pixels(geometry->GetView())));
+  }
+  catch (const std::exception & error)
+  {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
