@@ -82,6 +82,45 @@ class Commands(TestCase):
             again = numpy.asarray(nibabel.load("again.nii.gz").dataobj)
             self.assertLess(numpy.abs(again - model).mean(), 1e-4 * model.max(), convention)
 
+    def test_density(self):
+        """Fits with their options, calibration, voxels and profiles."""
+        self.succeed("phantom", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 8, "--contour-spacing", 8, "-o", "c.vtp")
+        self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 3, "-o", "d.vtu", "--report", "linear.json")
+        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 3, "--interpolator", "bspline", "--voxel-weight", 4,
+                     "--overshoot-limit", 2, "-o", "s.vtu", "--report", "spline.json")
+        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 4, "--max-error", 60, "-o", "a.vtu", "--report", "adaptive.json")
+        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--surface-margin", 1, "--weights", "l.nii.gz", "-o", "w.vtu")
+        linear, spline, adaptive = (read_json(name + ".json") for name in ("linear", "spline", "adaptive"))
+        self.assertLess(spline["error"]["meanAbsolute"], linear["error"]["meanAbsolute"])
+        self.assertLess(linear["error"]["meanAbsolute"], linear["heldOutError"]["meanAbsolute"])
+        self.assertGreater(len(adaptive["tetrahedraByDegree"]), 2)
+        self.assertEqual(sum(adaptive["tetrahedraByDegree"].values()), adaptive["tetrahedra"])
+        self.refuse("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--max-error", 5, "--continuous", "-o", "x.vtu", code=2)
+
+        write_json({"references": [{"name": "rod", "density": 0, "value": 0}, {"name": "cortex", "density": 1200, "label": 1},
+                                   {"name": "soft tissue", "density": 40, "from": [-24, 0, -60], "to": [-24, 0, -66],
+                                    "radius": 4}]}, "r.json")
+        out, _ = self.succeed("calibrate", "d.vtu", "--references", "r.json", "--to", "ha", "--ct", "ct.nii.gz", "--labels",
+                              "l.nii.gz", "--law", "keyak2005", "-o", "ash.vtu")
+        self.assertIn("Keyak", out)
+        self.assertIn("ash g/cm3", self.succeed("info", "ash.vtu")[0])
+        self.succeed("calibrate", "ash.vtu", "--law", "schileo2008", "-o", "apparent.vtu")
+        self.refuse("calibrate", "ash.vtu", "--law", "les1994", "-o", "x.vtu", says="K2HPO4")
+        self.refuse("calibrate", "d.vtu", "--references", "r.json", "--to", "ha", "-o", "x.vtu", code=2)
+        self.refuse("calibrate", "d.vtu", "-o", "x.vtu", code=2)
+
+        self.succeed("voxels", "d.vtu", "--like", "ct.nii.gz", "-o", "v.nii.gz")
+        model, truth = (numpy.asarray(nibabel.load(name).dataobj) for name in ("v.nii.gz", "ct.nii.gz"))
+        inside = model > -1024
+        self.assertLess(numpy.abs(model - truth)[inside].mean(), 1.01 * linear["error"]["meanAbsolute"])
+        self.succeed("voxels", "d.vtu", "--spacing", 4, "-o", "coarse.mha")
+        self.succeed("profile", "d.vtu", "--from", -30, 0, -60, "--to", 30, 0, -60, "--ct", "ct.nii.gz", "--points", 61, "-o",
+                     "p.csv")
+        with open("p.csv") as file:
+            self.assertEqual(len(file.readlines()), 62)
+
     def test_hemipelvis_branches(self):
         self.succeed("phantom", "--bone", "hemipelvis", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")

@@ -222,4 +222,32 @@ TEST(DensityEvaluation, ComparisonOfNothingIsZero)
   EXPECT_EQ(none.voxels, 0u);
   EXPECT_EQ(none.meanAbsolute, 0);
 }
+TEST(DensityProfile, OfALinearDensityIsThatLineInsideAndNothingOutside)
+{
+  const MeshArrays   mesh = Tube(3);
+  const TetraLocator locator(mesh);
+  Vector3            middle = Vector3::Zero();
+  for (const IdType p : mesh.tetrahedra[0])
+  {
+    middle += 0.25 * mesh.points[p];
+  }
+  const Vector3 from = middle - Vector3(200, 0, 0), to = middle + Vector3(200, 0, 0);
+  const auto    profile = DensityProfile(mesh, locator, from, to, 2001);
+  std::size_t   inside = 0;
+  for (const DensityProfilePoint & p : profile)
+  {
+    EXPECT_NEAR(p.distance, (p.point - from).norm(), 1e-9);
+    if (p.cell < 0)
+    {
+      EXPECT_TRUE(std::isnan(p.value) && std::isnan(p.gradient[0]));
+      continue;
+    }
+    ++inside;
+    EXPECT_NEAR(p.value, Linear(p.point), 1e-8);
+    EXPECT_LT((p.gradient - Vector3(3, -2, 5)).norm(), 1e-8);
+  }
+  EXPECT_GT(inside, 3u);
+  EXPECT_LT(inside, profile.size());
+  EXPECT_THROW(DensityProfile(mesh, locator, from, to, 1), std::invalid_argument);
+}
 } // namespace

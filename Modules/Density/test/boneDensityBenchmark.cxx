@@ -14,16 +14,16 @@ using namespace bone;
 
 /** A block of 33,000 tetrahedra of about 10 mm^3 (paper, Table 1), in a CT of 0.7 x 0.7 x 1 mm: 20 voxels in each. */
 MeshArrays
-BoneSizedBlock()
+BoneSizedBlock(int layers = 28)
 {
-  return test::MakeBlock({ { 14, 14, 28 } }, Vector3(4, 4, 6), 3.9, 0.2);
+  return test::MakeBlock({ { 14, 14, layers } }, Vector3(4, 4, 6), 3.9, 0.2);
 }
 
 test::Image::Pointer
-BoneSizedImage()
+BoneSizedImage(int layers = 28)
 {
   auto                  image = test::Image::New();
-  test::Image::SizeType size = { { 92, 92, 124 } };
+  test::Image::SizeType size = { { 92, 92, static_cast<itk::SizeValueType>(15 + 4 * layers) } };
   const double          spacing[3] = { 0.7, 0.7, 1.0 };
   image->SetRegions(size);
   image->SetSpacing(spacing);
@@ -37,11 +37,11 @@ BoneSizedImage()
 }
 
 DensityFitFilter<>::Pointer
-MakeFit(int degree, bool continuous)
+MakeFit(int degree, bool continuous, int layers = 28)
 {
   auto filter = DensityFitFilter<>::New();
-  filter->SetInput(test::ToMesh(BoneSizedBlock()));
-  filter->SetImage(BoneSizedImage());
+  filter->SetInput(test::ToMesh(BoneSizedBlock(layers)));
+  filter->SetImage(BoneSizedImage(layers));
   filter->SetDegree(degree);
   filter->SetContinuous(continuous);
   return filter;
@@ -62,6 +62,25 @@ BENCHMARK(Fit)
   ->ArgNames({ "degree", "continuous" })
   ->ArgsProduct({ { 0, 1, 3, 6, 8 }, { 0 } })
   ->ArgsProduct({ { 1, 3 }, { 1 } })
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
+
+/** The same density of cells and voxels, more of them: the cost should grow as they do. */
+void
+FitOfMore(benchmark::State & state)
+{
+  auto filter = MakeFit(3, state.range(1) != 0, static_cast<int>(state.range(0)));
+  for (auto _ : state)
+  {
+    filter->Modified();
+    filter->Update();
+  }
+  state.counters["tetrahedra"] = static_cast<double>(filter->GetOutput()->GetNumberOfTetrahedra());
+}
+BENCHMARK(FitOfMore)
+  ->ArgNames({ "layers", "continuous" })
+  ->ArgsProduct({ { 14, 28, 56, 112 }, { 0, 1 } })
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime()
   ->UseRealTime();
