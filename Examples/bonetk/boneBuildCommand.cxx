@@ -14,6 +14,7 @@
 #include "boneHierarchyIO.h"
 #include "boneStageClock.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -86,6 +87,20 @@ CountsOfLevels(const std::vector<double> & levels, IdType finest)
   return counts;
 }
 
+/** How far the quality stage may move surfaces, mm: half a pixel of the slices, but no more than keeps the overlap with
+ * a label map of large voxels. */
+double
+DistanceBound(const CTImage & ct, int axis)
+{
+  constexpr double largest = 0.3;
+  double           bound = largest;
+  for (int d = 0; d < 3; ++d)
+  {
+    bound = d == axis ? bound : std::min(bound, 0.5 * ct.GetSpacing()[static_cast<unsigned int>(d)]);
+  }
+  return bound;
+}
+
 /** Sets the pipeline up and finds the resolution; the tiling is then up to date. */
 Resolution
 FindResolution(const Options & options, const Input & input, BuildPipeline & pipeline, Session & session)
@@ -110,6 +125,7 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
     resolution.contourSpacing *= resolution.sliceStep / options.sliceStep;
     resolution.sliceStep = options.sliceStep;
   }
+  pipeline.GetQuality()->SetDistanceBound(DistanceBound(*input.ct, options.axis));
   pipeline.GetFit()->SetDegree(options.degree);
   pipeline.GetFit()->SetContinuous(options.continuous);
   const ResolutionSearch search{

@@ -117,6 +117,10 @@ public:
     return c[0] == p || c[1] == p || c[2] == p || c[3] == p;
   }
 
+  /** Living cells that have both points, in the order of a's star. */
+  std::vector<IdType>
+  EdgeStar(IdType a, IdType b) const;
+
   /** Points joined to p by an edge, in order of discovery. */
   std::vector<IdType>
   PointNeighbors(IdType p) const;
@@ -146,6 +150,22 @@ public:
   std::vector<IdType>
   Replace(const std::vector<IdType> & removed, const std::vector<Id4> & created);
 
+  /** \brief Replaces the cells around a surface edge, so that the surface turns to its other diagonal.
+   *
+   * As Replace(), but cells of two regions: `regions` are those of the new cells, and new faces between regions, or
+   * between a region and outside, become faces of `surface`. */
+  std::vector<IdType>
+  ReplaceAcross(const std::vector<IdType> & removed,
+                const std::vector<Id4> &    created,
+                const std::vector<int> &    regions,
+                int                         surface);
+
+  /** \brief Puts a new point at x on an edge within a region: each cell around the edge becomes two.
+   *
+   * \pre No surface face has the edge. Returns the new point, which has dimension 3; geometry is not looked at. */
+  IdType
+  SplitEdge(IdType a, IdType b, const Vector3 & x);
+
   /** \brief Whether the half-edge collapse v -> w keeps the topology of the body, its surfaces and its curves.
    *
    * Link condition for the complex with its strata, outside being one more region: T. K. Dey, H. Edelsbrunner, S. Guha,
@@ -159,14 +179,31 @@ public:
   Collapse(IdType v, IdType w);
 
   /** Tetrahedra, regions and neighbours of the living cells in order of their slots, and the points that they use.
-   * Attributes of points and cells are taken from `source`, the mesh this was made of; densities are not. The old id of
-   * each point is returned in `pointId`, and of each cell its slot in `cellSlot`. */
+   * Attributes of points and cells are taken from `source`, the mesh this was made of; densities are not. A point that
+   * was added within region r has layer r, as a medial axis there, and the slice of an end of the edge it was put on.
+   * The old id of each point is returned in `pointId`, and of each cell its slot in `cellSlot`. */
   MeshArrays
   Compact(const MeshArrays & source, std::vector<IdType> & pointId, std::vector<IdType> & cellSlot) const;
 
 private:
+  /** A face around a set of cells that is replaced. */
+  struct OuterFace
+  {
+    std::array<IdType, 3> key; ///< ascending
+    IdType                neighbor;
+    int                   surface;
+    bool                  inner; ///< between two new cells
+    bool                  used;
+  };
+
   bool
   LinksMeetInEdgeLink(IdType v, IdType w) const;
+  std::vector<IdType>
+  AllocateSlots(const std::vector<IdType> & removed, std::size_t count);
+  void
+  LinkFaces(const std::vector<IdType> & cells, std::vector<OuterFace> & outer, int surface);
+  std::vector<OuterFace>
+  TakeOut(const std::vector<IdType> & removed);
   void
   EraseFromStar(IdType p, IdType t);
   void
@@ -178,6 +215,7 @@ private:
   std::vector<int>                 m_Region;
   SurfaceComplex                   m_Surfaces;
   std::vector<std::vector<IdType>> m_Star;
+  std::vector<IdType>              m_Parent; ///< of each added point, an end of the edge it was put on
   IdType                           m_AliveCount{ 0 };
   mutable std::vector<char>        m_Mark; ///< of points, for LinksMeetInEdgeLink; else 0
 };

@@ -37,6 +37,29 @@ RemoveFace(TetraComplex & complex, IdType t, int i);
 FlipResult
 RemoveEdge(TetraComplex & complex, IdType a, IdType b);
 
+/** A flip of a surface edge that could be made: see \ref PlanSurfaceFlip. */
+struct SurfaceFlip
+{
+  MeshOperation         outcome{ MeshOperation::Surface };
+  std::array<IdType, 2> edge{};    ///< a, b: the edge that goes
+  std::array<IdType, 2> corners{}; ///< c, d: the ends of the surface edge that comes
+  int                   surface{ -1 };
+  std::vector<IdType>   removed;
+  std::vector<Id4>      created;
+  std::vector<int>      regions; ///< of the new cells
+};
+
+/** \brief Flip of an edge (a, b) of the boundary or an interface: the surface's triangles (a, b, c) and (a, b, d)
+ * become (a, c, d) and (b, c, d), and the cells on each side of the surface are those of the best triangulation of
+ * their ring.
+ *
+ * A side of one cell has no new cells: it goes over to the other side, or is peeled off the body. `outcome` is Done
+ * where all new cells are positive (exact) and the worst of them is better than the worst old one; Surface where the
+ * edge is part of a curve, or a side of one cell is part of another surface; Topology where c and d are joined already.
+ * Whether the surface stays near its place and off itself is not looked at. Made by TetraComplex::ReplaceAcross. */
+SurfaceFlip
+PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b);
+
 /** Cosine of the smallest dihedral angle of a living cell: the larger the worse. */
 double
 CellCosine(const TetraComplex & complex, IdType t);

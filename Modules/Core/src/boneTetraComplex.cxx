@@ -128,13 +128,6 @@ FaceKey(const Id4 & cell, int i)
   std::sort(key.begin(), key.end());
   return key;
 }
-
-struct OuterFace
-{
-  std::array<IdType, 3> key;
-  IdType                neighbor;
-  int                   surface;
-};
 } // namespace
 
 const char *
@@ -238,17 +231,30 @@ TetraComplex::SetNeighbor(IdType t, IdType oldNeighbor, IdType newNeighbor, int 
 }
 
 std::vector<IdType>
-TetraComplex::Replace(const std::vector<IdType> & removed, const std::vector<Id4> & created)
+TetraComplex::EdgeStar(IdType a, IdType b) const
+{
+  std::vector<IdType> cells;
+  for (IdType t : m_Star[a])
+  {
+    if (Has(t, b))
+    {
+      cells.push_back(t);
+    }
+  }
+  return cells;
+}
+
+std::vector<TetraComplex::OuterFace>
+TetraComplex::TakeOut(const std::vector<IdType> & removed)
 {
   std::vector<OuterFace> outer;
-  const int              region = m_Region[removed.front()];
   for (IdType t : removed)
   {
     for (int i = 0; i < 4; ++i)
     {
       if (m_Neighbors[t][i] < 0 || !Contains(removed, m_Neighbors[t][i]))
       {
-        outer.push_back({ FaceKey(m_Cells[t], i), m_Neighbors[t][i], m_Surfaces.faceSurface[t][i] });
+        outer.push_back({ FaceKey(m_Cells[t], i), m_Neighbors[t][i], m_Surfaces.faceSurface[t][i], false, false });
       }
     }
     for (IdType p : m_Cells[t])
@@ -256,57 +262,125 @@ TetraComplex::Replace(const std::vector<IdType> & removed, const std::vector<Id4
       EraseFromStar(p, t);
     }
   }
-  std::vector<IdType> ids(removed.begin(), removed.begin() + std::min(removed.size(), created.size()));
-  for (std::size_t k = ids.size(); k < created.size(); ++k)
+  return outer;
+}
+
+std::vector<IdType>
+TetraComplex::AllocateSlots(const std::vector<IdType> & removed, std::size_t count)
+{
+  std::vector<IdType> ids(removed.begin(), removed.begin() + std::min(removed.size(), count));
+  for (std::size_t k = ids.size(); k < count; ++k)
   {
     ids.push_back(Size());
     m_Cells.emplace_back();
     m_Neighbors.emplace_back();
-    m_Region.push_back(region);
+    m_Region.push_back(0);
     m_Surfaces.faceSurface.emplace_back();
   }
-  for (std::size_t k = created.size(); k < removed.size(); ++k)
+  for (std::size_t k = count; k < removed.size(); ++k)
   {
     m_Cells[removed[k]] = Id4{ -1, -1, -1, -1 };
   }
-  for (std::size_t k = 0; k < ids.size(); ++k)
-  {
-    const IdType t = ids[k];
-    m_Cells[t] = created[k];
-    m_Region[t] = region;
-    for (IdType p : created[k])
+  m_AliveCount += static_cast<IdType>(count) - static_cast<IdType>(removed.size());
+  return ids;
+}
+
+void
+TetraComplex::LinkFaces(const std::vector<IdType> & cells, std::vector<OuterFace> & outer, int surface)
+{
+  // By its vertices: while slots are reused, an id alone could name two faces.
+  const auto setBack = [this](IdType t, const std::array<IdType, 3> & key, IdType neighbor, int s) {
+    for (int j = 0; j < 4; ++j)
     {
-      m_Star[p].push_back(t);
+      if (FaceKey(m_Cells[t], j) == key)
+      {
+        m_Neighbors[t][j] = neighbor;
+        m_Surfaces.faceSurface[t][j] = s;
+      }
     }
+  };
+  for (IdType t : cells)
+  {
     for (int i = 0; i < 4; ++i)
     {
-      const auto key = FaceKey(created[k], i);
+      const auto key = FaceKey(m_Cells[t], i);
       const auto at = std::find_if(outer.begin(), outer.end(), [&key](const OuterFace & f) { return f.key == key; });
       if (at == outer.end())
       {
-        // An inner face: its other cell finds it here.
+        // An inner face, whose other cell finds it here; or, where there is none, one of the surface.
         m_Neighbors[t][i] = -1;
-        m_Surfaces.faceSurface[t][i] = -1;
-        outer.push_back({ key, t, -1 });
+        m_Surfaces.faceSurface[t][i] = surface;
+        outer.push_back({ key, t, -1, true, false });
         continue;
       }
+      at->used = true;
+      const bool newSurface = at->neighbor >= 0 && at->surface < 0 && m_Region[at->neighbor] != m_Region[t];
+      const int  s = newSurface ? surface : at->surface;
       m_Neighbors[t][i] = at->neighbor;
-      m_Surfaces.faceSurface[t][i] = at->surface;
+      m_Surfaces.faceSurface[t][i] = s;
       if (at->neighbor >= 0)
       {
-        // By its vertices: while slots are reused, an id alone could name two faces.
-        for (int j = 0; j < 4; ++j)
-        {
-          if (FaceKey(m_Cells[at->neighbor], j) == key)
-          {
-            m_Neighbors[at->neighbor][j] = t;
-          }
-        }
+        setBack(at->neighbor, key, t, s);
       }
     }
   }
-  m_AliveCount += static_cast<IdType>(created.size()) - static_cast<IdType>(removed.size());
+  for (const OuterFace & face : outer)
+  {
+    if (!face.used && !face.inner && face.neighbor >= 0)
+    {
+      setBack(face.neighbor, face.key, -1, surface);
+    }
+  }
+}
+
+std::vector<IdType>
+TetraComplex::Replace(const std::vector<IdType> & removed, const std::vector<Id4> & created)
+{
+  return ReplaceAcross(removed, created, std::vector<int>(created.size(), m_Region[removed.front()]), -1);
+}
+
+std::vector<IdType>
+TetraComplex::ReplaceAcross(const std::vector<IdType> & removed,
+                            const std::vector<Id4> &    created,
+                            const std::vector<int> &    regions,
+                            int                         surface)
+{
+  std::vector<OuterFace>    outer = TakeOut(removed);
+  const std::vector<IdType> ids = AllocateSlots(removed, created.size());
+  for (std::size_t k = 0; k < ids.size(); ++k)
+  {
+    m_Cells[ids[k]] = created[k];
+    m_Region[ids[k]] = regions[k];
+    for (IdType p : created[k])
+    {
+      m_Star[p].push_back(ids[k]);
+    }
+  }
+  LinkFaces(ids, outer, surface);
   return ids;
+}
+
+IdType
+TetraComplex::SplitEdge(IdType a, IdType b, const Vector3 & x)
+{
+  const IdType n = static_cast<IdType>(m_Points.size());
+  m_Points.push_back(x);
+  m_Star.emplace_back();
+  m_Surfaces.dimension.push_back(3);
+  m_Surfaces.curve.emplace_back();
+  m_Parent.push_back(a);
+  const std::vector<IdType> removed = EdgeStar(a, b);
+  std::vector<Id4>          created;
+  for (IdType t : removed)
+  {
+    for (IdType p : { a, b })
+    {
+      created.push_back(m_Cells[t]);
+      created.back()[LocalIndex(t, p)] = n;
+    }
+  }
+  Replace(removed, created);
+  return n;
 }
 
 MeshOperation
@@ -448,6 +522,18 @@ TetraComplex::Compact(const MeshArrays & source, std::vector<IdType> & pointId, 
   mesh.points = m_Points;
   mesh.layer = source.layer;
   mesh.slice = source.slice;
+  for (std::size_t k = 0; k < m_Parent.size(); ++k)
+  {
+    const IdType p = static_cast<IdType>(source.points.size() + k);
+    if (!source.layer.empty())
+    {
+      mesh.layer.push_back(m_Star[p].empty() ? 0 : m_Region[m_Star[p].front()]);
+    }
+    if (!source.slice.empty())
+    {
+      mesh.slice.push_back(mesh.slice[m_Parent[k]]);
+    }
+  }
   for (IdType t : cellSlot)
   {
     mesh.tetrahedra.push_back(m_Cells[t]);

@@ -204,6 +204,43 @@ private:
   int                         m_Split[MaximumEdgeRing][MaximumEdgeRing];
 };
 
+/** Cells on one side of a surface edge, from its face with `from` to its other face; Surface where the walk meets
+ * another surface first, Quality where it is too long. The cells turn around the edge in the order of the points. */
+MeshOperation
+FindHalfRing(const TetraComplex & complex, IdType a, IdType b, IdType first, int firstFace, Ring & ring)
+{
+  // `face` is the position of the point opposite the surface face, so the walk leaves through the face opposite `from`.
+  IdType     t = first;
+  int        next = firstFace;
+  const auto other = [&](int not1) {
+    int i = 0;
+    while (i == not1 || complex.Cell(t)[i] == a || complex.Cell(t)[i] == b)
+    {
+      ++i;
+    }
+    return i;
+  };
+  int from = other(next);
+  for (;;)
+  {
+    ring.points.push_back(complex.Cell(t)[from]);
+    ring.cells.push_back(t);
+    if (complex.FaceSurfaces(t)[from] >= 0)
+    {
+      ring.points.push_back(complex.Cell(t)[next]);
+      return MeshOperation::Done;
+    }
+    if (static_cast<int>(ring.cells.size()) == MaximumEdgeRing - 1)
+    {
+      return MeshOperation::Quality;
+    }
+    const IdType pivot = complex.Cell(t)[next];
+    t = complex.Neighbors(t)[from];
+    from = complex.LocalIndex(t, pivot);
+    next = other(from);
+  }
+}
+
 /** Tries all flips at one cell; the first that is done ends it. */
 class CellImprover
 {
@@ -333,6 +370,117 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
     return result;
   }
   return Commit(complex, ring.cells, triangulation.Cells(), before);
+}
+
+SurfaceFlip
+PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b)
+{
+  SurfaceFlip       plan;
+  std::vector<Ring> sides;
+  double            before = -1.0;
+  int               faces = 0;
+  plan.edge = { a, b };
+  for (IdType t : complex.EdgeStar(a, b))
+  {
+    before = std::max(before, CellCosine(complex, t));
+    for (int i = 0; i < 4; ++i)
+    {
+      const IdType p = complex.Cell(t)[i];
+      const int    surface = complex.FaceSurfaces(t)[i];
+      if (p == a || p == b || surface < 0)
+      {
+        continue;
+      }
+      ++faces;
+      const bool boundary = complex.Neighbors(t)[i] < 0;
+      if (plan.surface >= 0 && surface != plan.surface)
+      {
+        return plan;
+      }
+      plan.surface = surface;
+      // Each side is walked once: from the first of its faces that is met.
+      const bool walked = std::any_of(sides.begin(), sides.end(), [t](const Ring & side) {
+        return side.cells.front() == t || side.cells.back() == t;
+      });
+      if (!walked)
+      {
+        sides.emplace_back();
+        const MeshOperation found = FindHalfRing(complex, a, b, t, i, sides.back());
+        if (found != MeshOperation::Done)
+        {
+          plan.outcome = found;
+          return plan;
+        }
+      }
+      if (static_cast<int>(sides.size()) > (boundary ? 1 : 2))
+      {
+        return plan;
+      }
+    }
+  }
+  if (sides.empty() || faces != 2 * static_cast<int>(sides.size()))
+  {
+    return plan;
+  }
+  const IdType c = sides[0].points.front(), d = sides[0].points.back();
+  plan.corners = { c, d };
+  bool single = false;
+  for (Ring & side : sides)
+  {
+    if (side.cells.size() == 1)
+    {
+      const IdType t = side.cells.front();
+      if (single || complex.FaceSurfaces(t)[complex.LocalIndex(t, a)] >= 0 ||
+          complex.FaceSurfaces(t)[complex.LocalIndex(t, b)] >= 0)
+      {
+        return plan;
+      }
+      single = true;
+    }
+  }
+  plan.outcome = MeshOperation::Topology;
+  for (IdType t : complex.EdgeStar(c, d))
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const IdType p = complex.Cell(t)[i];
+      if (!single || (p != c && p != d && complex.FaceSurfaces(t)[i] >= 0))
+      {
+        return plan;
+      }
+    }
+  }
+  plan.outcome = MeshOperation::Quality;
+  const auto & p = complex.Points();
+  double       after = -1.0;
+  for (Ring & side : sides)
+  {
+    const int region = complex.Region(side.cells.front());
+    plan.removed.insert(plan.removed.end(), side.cells.begin(), side.cells.end());
+    if (side.cells.size() == 1)
+    {
+      continue;
+    }
+    if (Orient3D(p[a], p[side.points[0]], p[side.points[1]], p[b]) < 0)
+    {
+      std::reverse(side.points.begin(), side.points.end());
+    }
+    const RingTriangulation triangulation(complex, side, a, b);
+    after = std::max(after, triangulation.Worst());
+    if (!(after < before - MinimumGain))
+    {
+      return plan;
+    }
+    for (const Id4 & cell : triangulation.Cells())
+    {
+      plan.created.push_back(cell);
+      plan.regions.push_back(region);
+    }
+  }
+  const bool positive = std::all_of(
+    plan.created.begin(), plan.created.end(), [&complex](const Id4 & cell) { return IsPositive(complex, cell); });
+  plan.outcome = positive ? MeshOperation::Done : MeshOperation::Orientation;
+  return plan;
 }
 
 FlipReport

@@ -208,6 +208,97 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
   }
 }
 
+TEST(TetraFlips, SurfaceFlipsKeepMeshValidAndNeverLowerTheWorstAngle)
+{
+  std::size_t boundary = 0, interfaces = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed)
+  {
+    const auto   mesh = test::MakeBall(3, { 1, 1, 2 }, 10, 0.15, seed);
+    TetraComplex complex(mesh);
+    for (IdType a = 0; a < static_cast<IdType>(mesh.points.size()); ++a)
+    {
+      for (IdType b : complex.PointNeighbors(a))
+      {
+        const SurfaceFlip plan = a < b ? PlanSurfaceFlip(complex, a, b) : SurfaceFlip();
+        if (plan.outcome != MeshOperation::Done)
+        {
+          continue;
+        }
+        double before = -1.0, after = -1.0;
+        for (IdType t : plan.removed)
+        {
+          before = std::max(before, CellCosine(complex, t));
+        }
+        for (IdType t : complex.ReplaceAcross(plan.removed, plan.created, plan.regions, plan.surface))
+        {
+          after = std::max(after, CellCosine(complex, t));
+        }
+        EXPECT_LT(after, before);
+        EXPECT_TRUE(complex.EdgeStar(a, b).empty());
+        EXPECT_FALSE(complex.EdgeStar(plan.corners[0], plan.corners[1]).empty());
+        (complex.Surfaces().surfaces[plan.surface].IsBoundary() ? boundary : interfaces) += 1;
+      }
+    }
+    const auto made = Compacted(complex, mesh);
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+    EXPECT_EQ(made.neighbors, ComputeFaceNeighbors(made.tetrahedra));
+    for (int region = 0; region <= 2; ++region)
+    {
+      EXPECT_EQ(BoundaryFaces(made, region).size(), BoundaryFaces(mesh, region).size());
+    }
+  }
+  EXPECT_GT(boundary, 0u);
+  EXPECT_GT(interfaces, 0u);
+}
+
+TEST(TetraComplex, SplitEdgesKeepVolumeAndTopologyAndCanBeCollapsed)
+{
+  auto mesh = test::MakeBall(3, { 1, 1, 2 }, 10, 0.1, 1);
+  mesh.layer.assign(mesh.points.size(), 0);
+  TetraComplex complex(mesh);
+  const IdType count = static_cast<IdType>(mesh.points.size());
+  for (IdType a = 0; a < count; ++a)
+  {
+    for (IdType b : complex.PointNeighbors(a))
+    {
+      if (a < b && b < count && complex.Dimension(a) == 3)
+      {
+        const auto star = complex.EdgeStar(a, b);
+        const auto before = complex.AliveCells();
+        complex.SplitEdge(a, b, 0.5 * (mesh.points[a] + mesh.points[b]));
+        EXPECT_EQ(complex.AliveCells(), before + static_cast<IdType>(star.size()));
+      }
+    }
+  }
+  const auto made = Compacted(complex, mesh);
+  EXPECT_GT(made.points.size(), mesh.points.size());
+  ASSERT_EQ(made.layer.size(), made.points.size());
+  for (std::size_t t = 0; t < made.tetrahedra.size(); ++t)
+  {
+    for (IdType p : made.tetrahedra[t])
+    {
+      EXPECT_TRUE(p < count || made.layer[p] == made.region[t]) << "as a medial axis there";
+    }
+  }
+  EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+  for (int region = 1; region <= 2; ++region)
+  {
+    EXPECT_NEAR(Volume(made, region), Volume(mesh, region), 1e-9 * Volume(mesh, region));
+  }
+  for (IdType p = count; p < static_cast<IdType>(complex.Points().size()); ++p)
+  {
+    for (IdType q : complex.PointNeighbors(p))
+    {
+      if (complex.CanCollapse(p, q) == MeshOperation::Done)
+      {
+        complex.Collapse(p, q);
+        break;
+      }
+    }
+  }
+  EXPECT_EQ(Compacted(complex, mesh).points.size(), mesh.points.size());
+}
+
 TEST(TetraComplex, CollapseKeepsTopologyWhereTheLinkConditionHolds)
 {
   // Topology alone: cells may invert here, so that orientation is left out of the comparison.

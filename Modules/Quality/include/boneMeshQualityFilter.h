@@ -4,6 +4,7 @@
 #ifndef boneMeshQualityFilter_h
 #define boneMeshQualityFilter_h
 
+#include "boneMeshImprovement.h"
 #include "boneMeshToMeshFilter.h"
 
 #include <cmath>
@@ -13,11 +14,14 @@ namespace bone
 /** \class MeshQualityFilter
  * \brief Makes a tiled mesh fit for computing: smoothing, swaps and optimisation in turn (paper 2.7).
  *
- * Each round smooths (\ref TetraSmoothingFilter, Enhanced; two iterations after the first round), swaps (\ref
- * TetraSwapFilter) and moves the points of the worst cells by a pattern search that raises the smallest dihedral angle
- * around the point. Boundary, interfaces, rims and flat cuts are kept within DistanceBound throughout, and a valid mesh
- * stays valid. The number of cells may change a little, that of points does not.
- * Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
+ * Boundary and interfaces are faired by at most DistanceBound; then each round smooths inner points, adds and removes
+ * points inside regions until cells grow from the surfaces inward by Gradation, swaps faces and edges, and looks after
+ * the worst cells: flips of surface edges, edge collapses, and a pattern search for their points. Each of these raises
+ * the smallest dihedral angle of what it touches; new triangles of boundary and interfaces stay within DistanceBound of
+ * the first ones, and regions keep their volumes. A valid mesh stays valid, flat cuts flat, layers what they are.
+ *
+ * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
+ * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
 template <typename TMesh = DensityMesh<double>>
 class MeshQualityFilter : public MeshToMeshFilter<TMesh>
 {
@@ -30,21 +34,24 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(MeshQualityFilter, MeshToMeshFilter);
 
-  /** Smoothing iterations of the first round; default 10. */
+  /** Smoothing iterations at the start; default 4. */
   itkSetMacro(Iterations, int);
   itkGetConstMacro(Iterations, int);
-  /** How far boundary and interfaces may be faired, mm; default 0.3. */
+  /** How far boundary and interfaces may be faired and their triangles changed, mm; default 0.3. */
   itkSetMacro(DistanceBound, double);
   itkGetConstMacro(DistanceBound, double);
-  /** Pairs of Taubin steps that fair the surfaces; default 10. */
+  /** Steps that fair the surfaces; default 10. */
   itkSetMacro(FairingIterations, int);
   itkGetConstMacro(FairingIterations, int);
-  /** Rounds of smoothing, swaps and optimisation; default 3. */
+  /** Rounds of smoothing, swaps, repair and optimisation; default 3. */
   itkSetMacro(Rounds, int);
   itkGetConstMacro(Rounds, int);
-  /** Cells with a dihedral angle below are swapped and optimised, rad; default 0.44 (25 degrees). */
+  /** Cells with a dihedral angle below are swapped and their inner points optimised, rad; default 0.44 (25 degrees). */
   itkSetMacro(TargetAngle, double);
   itkGetConstMacro(TargetAngle, double);
+  /** How cells grow inward from the surfaces, mm a mm; default 0.8. 0: no points are added. */
+  itkSetMacro(Gradation, double);
+  itkGetConstMacro(Gradation, double);
   /** Passes of optimisation a round; default 2. */
   itkSetMacro(OptimizationPasses, int);
   itkGetConstMacro(OptimizationPasses, int);
@@ -66,11 +73,12 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  int               m_Iterations{ 10 };
+  int               m_Iterations{ 4 };
   double            m_DistanceBound{ 0.3 };
   int               m_FairingIterations{ 10 };
   int               m_Rounds{ 3 };
   double            m_TargetAngle{ 0.44 };
+  double            m_Gradation{ 0.8 };
   int               m_OptimizationPasses{ 2 };
   ImprovementReport m_Report;
 };

@@ -23,6 +23,10 @@ MeshQualityFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
   {
     itkExceptionMacro("DistanceBound is " << m_DistanceBound << " mm; it must be finite and not negative.");
   }
+  if (!(m_Gradation >= 0 && std::isfinite(m_Gradation)))
+  {
+    itkExceptionMacro("Gradation is " << m_Gradation << "; it must be finite and not negative.");
+  }
   if (!(m_TargetAngle > 0 && m_TargetAngle < 1.23))
   {
     itkExceptionMacro("TargetAngle is " << m_TargetAngle
@@ -35,11 +39,12 @@ void
 MeshQualityFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction & progress)
 {
   ImprovementParameters parameters;
-  parameters.smoothing.iterations = m_Iterations;
-  parameters.smoothing.distanceBound = m_DistanceBound;
-  parameters.smoothing.fairingIterations = m_FairingIterations;
+  parameters.iterations = m_Iterations;
+  parameters.distanceBound = m_DistanceBound;
+  parameters.fairingIterations = m_FairingIterations;
   parameters.rounds = m_Rounds;
   parameters.targetAngle = m_TargetAngle;
+  parameters.gradation = m_Gradation;
   parameters.optimizationPasses = m_OptimizationPasses;
   m_Report = ImproveMesh(complex, parameters, progress);
 }
@@ -54,6 +59,7 @@ MeshQualityFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
   os << indent << "FairingIterations: " << m_FairingIterations << std::endl;
   os << indent << "Rounds: " << m_Rounds << std::endl;
   os << indent << "TargetAngle: " << m_TargetAngle << std::endl;
+  os << indent << "Gradation: " << m_Gradation << std::endl;
   os << indent << "OptimizationPasses: " << m_OptimizationPasses << std::endl;
 }
 } // namespace bone

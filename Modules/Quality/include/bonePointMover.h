@@ -26,6 +26,15 @@ public:
   MeshOperation
   TryMove(IdType p, const Vector3 & x, double cosineFloor);
 
+  /** Whether boundary triangles may be replaced by others without the boundary passing through itself; where they may,
+   * this counts them as replaced. Triangles are counted where their surface is tested (\ref IsTested). */
+  bool
+  ReplaceBoundary(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added);
+
+  /** Whether triangles of a surface are tested against each other: those of the boundary, but for flat cuts. */
+  bool
+  IsTested(int surface) const;
+
   /** Cosine of the smallest dihedral angle around p. */
   double
   WorstCosine(IdType p) const;

@@ -18,13 +18,22 @@ enum class SmoothingMethod : int
   Enhanced = 2 ///< means along the point's own surface, put back on it; weighted back until no cell inverts (paper 2.7)
 };
 
+/** What Enhanced does with points of surfaces and curves. */
+enum class SurfaceMotion : int
+{
+  Slide = 0,         ///< to the mean of their neighbours, put back on the faired surface
+  ToFairedPlace = 1, ///< to where fairing alone puts them: samples stay as dense as they were where the surface curves
+  None = 2
+};
+
 struct SmoothingParameters
 {
   SmoothingMethod method{ SmoothingMethod::Enhanced };
   int             iterations{ 10 };
   double          distanceBound{ 0.3 }; ///< mm, how far boundary and interfaces may be faired
   int             fairingIterations{ 10 };
-  double          weight{ 0.5 };      ///< the paper's alpha, in (0, 1): share of the old place in each step back
+  double          weight{ 0.5 }; ///< the paper's alpha, in (0, 1): share of the old place in each step back
+  SurfaceMotion   surfaceMotion{ SurfaceMotion::Slide };
   double          angleFloor{ 0.14 }; ///< rad; no move takes a dihedral angle below this and below what it was
 };
 
@@ -51,26 +60,6 @@ EnhancedIteration(TetraComplex &              complex,
                   const SmoothingParameters & parameters,
                   SmoothingReport &           report);
 
-/** Parameters of \ref ImproveMesh. */
-struct ImprovementParameters
-{
-  SmoothingParameters smoothing;
-  int                 rounds{ 3 };         ///< of smoothing, flips and optimisation
-  double              targetAngle{ 0.44 }; ///< rad; cells with a smaller dihedral angle are flipped and optimised
-  int                 optimizationPasses{ 2 };
-};
-
-struct ImprovementReport
-{
-  SmoothingReport smoothing;
-  std::size_t     flips{ 0 };
-  std::size_t     optimized{ 0 }; ///< moves by optimisation
-};
-
-/** Alternates Enhanced smoothing, flips and a pattern search for the points of the worst cells, each move of which
- * raises the smallest dihedral angle around its point. Boundary and interface points move on their faired surfaces. */
-ImprovementReport
-ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});
 } // namespace bone
 
 #endif

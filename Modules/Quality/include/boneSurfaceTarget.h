@@ -14,15 +14,16 @@ namespace bone
 /** \class SurfaceTarget
  * \brief The faired boundary, interfaces and curves of a mesh: where smoothing puts points back (paper 2.7).
  *
- * Steps between slices are faired by Taubin's two-step filter (doi:10.1145/218380.218473, lambda 0.5, mu -0.53) along
- * the surfaces, and along curves where surfaces meet; corners and the inside of flat cuts stay. No point is moved by
- * more than the bound, so that every point of a target surface lies within the bound of the surface it was made from.
- * The target is made once and does not move with the mesh. */
+ * Steps between slices are faired along the surfaces, and along curves where surfaces meet, by descent on the energy of
+ * the umbrella operator: x - 0.4 U(U x), which keeps volume far better than a Laplacian (U x: mean of the neighbours
+ * less x). Corners and the inside of flat cuts stay. No point is moved by more than the bound, so that every point of a
+ * target surface lies within the bound of the surface it was made from. The target is made once and does not move with
+ * the mesh. */
 class SurfaceTarget
 {
 public:
   /** \param distanceBound      mm, not negative; 0: the surfaces as they are.
-   * \param fairingIterations  pairs of Taubin's steps. */
+   * \param fairingIterations  steps. */
   SurfaceTarget(const TetraComplex & complex, double distanceBound, int fairingIterations);
 
   /** The point of p's own surface (dimension 2) or curve (1) that is nearest to x; x itself for an inner point (3), and
@@ -35,8 +36,19 @@ public:
   Vector3
   Place(const TetraComplex & complex, IdType p, const Vector3 & x) const
   {
-    return m_IsRidge[p] ? m_Faired[p] : Project(complex, p, x);
+    return complex.Dimension(p) < 3 && m_IsRidge[p] ? m_Faired[p] : Project(complex, p, x);
   }
+
+  /** Where fairing alone puts a point of the mesh that the target was made from. */
+  const Vector3 &
+  Faired(IdType p) const
+  {
+    return m_Faired[p];
+  }
+
+  /** Squared distance (mm^2) of x from a surface. */
+  double
+  SquaredDistance(int surface, const Vector3 & x) const;
 
 private:
   std::vector<Vector3>
@@ -50,6 +62,7 @@ private:
   std::vector<char>         m_IsRidge; ///< #p
   std::vector<int>          m_Stratum; ///< #p, index of the tree, -1 for none
   std::vector<TriangleTree> m_Trees;
+  std::vector<int>          m_TreeOfSurface; ///< index of the tree
 };
 } // namespace bone
 

@@ -46,7 +46,7 @@ public:
   /** How far boundary and interfaces may be faired, mm; default 0.3, half the voxel of a usual clinical CT. 0: not. */
   itkSetMacro(DistanceBound, double);
   itkGetConstMacro(DistanceBound, double);
-  /** Pairs of Taubin steps that fair the surfaces; default 10. */
+  /** Steps that fair the surfaces; default 10. */
   itkSetMacro(FairingIterations, int);
   itkGetConstMacro(FairingIterations, int);
   /** The paper's alpha, 0..1; default 0.5. */

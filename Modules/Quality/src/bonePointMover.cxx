@@ -30,7 +30,7 @@ ForEachBoundaryTriangle(const TetraComplex & complex, TVisit visit)
   {
     for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
     {
-      if (IsTested(complex, complex.FaceSurfaces(t)[i]))
+      if (bone::IsTested(complex, complex.FaceSurfaces(t)[i]))
       {
         const Id4 & c = complex.Cell(t);
         visit(TriangleIds{ c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] });
@@ -82,6 +82,36 @@ PointMover::StarIsPositive(IdType p) const
   });
 }
 
+bool
+PointMover::IsTested(int surface) const
+{
+  return bone::IsTested(m_Complex, surface);
+}
+
+bool
+PointMover::ReplaceBoundary(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added)
+{
+  const auto & points = m_Complex.Points();
+  for (const TriangleIds & t : removed)
+  {
+    m_Grid.Erase(t, points);
+  }
+  bool crosses = false;
+  for (std::size_t i = 0; i < added.size() && !crosses; ++i)
+  {
+    for (std::size_t j = 0; j < i && !crosses; ++j)
+    {
+      crosses = TrianglesCross(added[i], added[j], points);
+    }
+    crosses = crosses || m_Grid.Crosses(added[i], -1, points);
+  }
+  for (const TriangleIds & t : crosses ? removed : added)
+  {
+    m_Grid.Insert(t, points);
+  }
+  return !crosses;
+}
+
 void
 PointMover::CollectBoundary(IdType p)
 {
@@ -89,7 +119,7 @@ PointMover::CollectBoundary(IdType p)
   m_Complex.SurfaceStar(p, m_Faces);
   for (const auto & face : m_Faces)
   {
-    if (IsTested(m_Complex, face.surface))
+    if (IsTested(face.surface))
     {
       m_Boundary.push_back({ p, face.a, face.b });
     }

@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneSmoothingKernel.h"
 
-#include "boneTetraFlips.h"
+#include "boneVolumeKeeper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,146 +71,6 @@ PlainIteration(TetraComplex & complex, PointMover & mover, bool smart, Smoothing
   }
 }
 
-/** Pattern search: steps along axes and diagonals, shrinking from stage to stage. */
-class PointOptimizer
-{
-public:
-  PointOptimizer(TetraComplex & complex, PointMover & mover, const SurfaceTarget & target)
-    : m_Complex(complex)
-    , m_Mover(mover)
-    , m_Target(target)
-    , m_Dirty(complex.Points().size(), 1)
-  {
-    for (int i = -1; i <= 1; ++i)
-    {
-      for (int j = -1; j <= 1; ++j)
-      {
-        for (int k = -1; k <= 1; ++k)
-        {
-          if (std::abs(i) + std::abs(j) + std::abs(k) == 1 || i * j * k != 0)
-          {
-            m_Directions.push_back(Vector3(i, j, k).normalized());
-          }
-        }
-      }
-    }
-  }
-
-  /** Moves the points of all cells whose smallest dihedral angle has a cosine above the limit, the worst first, each
-   * once. Returns the number of moves. */
-  std::size_t
-  Run(double limit)
-  {
-    std::vector<std::pair<double, IdType>> worst;
-    for (IdType t = 0; t < m_Complex.Size(); ++t)
-    {
-      const double cosine = m_Complex.IsAlive(t) ? CellCosine(m_Complex, t) : -1.0;
-      if (cosine > limit)
-      {
-        worst.emplace_back(-cosine, t);
-      }
-    }
-    std::sort(worst.begin(), worst.end());
-    std::size_t       moves = 0;
-    std::vector<char> seen(m_Dirty.size(), 0);
-    for (const auto & candidate : worst)
-    {
-      for (IdType p : m_Complex.Cell(candidate.second))
-      {
-        if (m_Dirty[p] && !seen[p] && m_Complex.Dimension(p) > 0)
-        {
-          m_Dirty[p] = 0;
-          seen[p] = 1;
-          moves += Improve(p);
-        }
-      }
-    }
-    return moves;
-  }
-
-  void
-  MarkAll()
-  {
-    std::fill(m_Dirty.begin(), m_Dirty.end(), 1);
-  }
-  void
-  Mark(const FlipResult & flip)
-  {
-    for (IdType t : flip.created)
-    {
-      for (IdType p : m_Complex.Cell(t))
-      {
-        m_Dirty[p] = 1;
-      }
-    }
-  }
-
-private:
-  bool
-  Improve(IdType p)
-  {
-    constexpr int    stages = 4;
-    constexpr double gain = 1e-4, first = 0.15, shrink = 0.4;
-    const auto       neighbors = m_Complex.PointNeighbors(p);
-    const Vector3    start = m_Complex.Points()[p];
-    double           step = 0.0;
-    for (IdType q : neighbors)
-    {
-      step += first * (m_Complex.Points()[q] - start).norm() / static_cast<double>(neighbors.size());
-    }
-    const double before = m_Mover.WorstCosine(p);
-    double       worst = before;
-    Vector3      best = start;
-    for (int stage = 0; stage < stages; ++stage, step *= shrink)
-    {
-      const Vector3 centre = best;
-      for (const Vector3 & direction : m_Directions)
-      {
-        const Vector3 x = m_Target.Project(m_Complex, p, centre + step * direction);
-        const double  cosine = WorstAt(p, x, worst);
-        if (cosine < worst)
-        {
-          worst = cosine;
-          best = x;
-        }
-      }
-    }
-    if (!(worst < before - gain) || m_Mover.TryMove(p, best, -1.0) != MeshOperation::Done)
-    {
-      return false;
-    }
-    for (IdType q : neighbors)
-    {
-      m_Dirty[q] = 1;
-    }
-    return true;
-  }
-
-  /** Worst cosine with p at x, or some value not below `limit`; 2 where a cell is not positive in floating point. The
-   * mesh is unchanged. */
-  double
-  WorstAt(IdType p, const Vector3 & x, double limit)
-  {
-    const auto &  points = m_Complex.Points();
-    const Vector3 before = points[p];
-    double        worst = -1.0;
-    m_Complex.MovePoint(p, x);
-    for (auto t = m_Complex.Star(p).begin(); t != m_Complex.Star(p).end() && worst < limit; ++t)
-    {
-      const Id4 & c = m_Complex.Cell(*t);
-      const bool  positive = SignedVolume(points[c[0]], points[c[1]], points[c[2]], points[c[3]]) > 0;
-      worst = positive ? std::max(worst, CellCosine(m_Complex, *t)) : 2.0;
-    }
-    m_Complex.MovePoint(p, before);
-    return worst;
-  }
-
-  TetraComplex &        m_Complex;
-  PointMover &          m_Mover;
-  const SurfaceTarget & m_Target;
-  std::vector<Vector3>  m_Directions;
-  std::vector<char>     m_Dirty; ///< something at the point has changed since it was last looked at
-};
 } // namespace
 
 void
@@ -220,15 +80,19 @@ EnhancedIteration(TetraComplex &              complex,
                   const SmoothingParameters & parameters,
                   SmoothingReport &           report)
 {
-  const double cosineFloor = std::cos(parameters.angleFloor);
+  const double        cosineFloor = std::cos(parameters.angleFloor);
+  const SurfaceMotion motion = parameters.surfaceMotion;
   for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
   {
-    if (complex.Star(p).empty() || complex.Dimension(p) == 0)
+    if (complex.Star(p).empty() || complex.Dimension(p) == 0 ||
+        (motion == SurfaceMotion::None && complex.Dimension(p) < 3))
     {
       continue;
     }
     const Vector3 old = complex.Points()[p];
-    Vector3       x = target.Place(complex, p, MeanOf(complex.Points(), StratumNeighbors(complex, p)));
+    const bool    atFaired = motion == SurfaceMotion::ToFairedPlace && complex.Dimension(p) < 3;
+    Vector3       x =
+      atFaired ? target.Faired(p) : target.Place(complex, p, MeanOf(complex.Points(), StratumNeighbors(complex, p)));
     MeshOperation outcome = mover.TryMove(p, x, cosineFloor);
     int           step = 0;
     for (; outcome != MeshOperation::Done && step < MaximumSteps; ++step)
@@ -255,6 +119,8 @@ SmoothPoints(TetraComplex & complex, const SmoothingParameters & parameters, con
   PointMover      mover(complex);
   const bool      enhanced = parameters.method == SmoothingMethod::Enhanced;
   SurfaceTarget   target(complex, parameters.distanceBound, enhanced ? parameters.fairingIterations : 0);
+  SurfaceTarget   first(complex, 0.0, 0);
+  VolumeKeeper    volumes(complex);
   for (int i = 0; i < parameters.iterations; ++i)
   {
     if (enhanced)
@@ -270,44 +136,12 @@ SmoothPoints(TetraComplex & complex, const SmoothingParameters & parameters, con
       progress(double(i + 1) / parameters.iterations);
     }
   }
-  return report;
-}
-
-ImprovementReport
-ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress)
-{
-  ImprovementReport           report;
-  const SmoothingParameters & smoothing = parameters.smoothing;
-  PointMover                  mover(complex);
-  const SurfaceTarget         target(complex, smoothing.distanceBound, smoothing.fairingIterations);
-  FlipParameters              flips;
-  flips.targetAngle = parameters.targetAngle;
-  PointOptimizer optimizer(complex, mover, target);
-  const auto     observer = [&](const FlipResult & flip) { optimizer.Mark(flip); };
-  const double   limit = std::cos(parameters.targetAngle);
-  const auto     advance = [&](double done) {
-    if (progress)
-    {
-      progress(done);
-    }
-  };
-  for (int round = 0; round < parameters.rounds; ++round)
+  if (enhanced && parameters.iterations > 0)
   {
-    const int iterations = round == 0 ? smoothing.iterations : std::min(2, smoothing.iterations);
-    for (int i = 0; i < iterations; ++i)
-    {
-      EnhancedIteration(complex, mover, target, smoothing, report.smoothing);
-      advance((round + 0.4 * (i + 1) / iterations) / parameters.rounds);
-    }
-    optimizer.MarkAll();
-    report.flips += ImproveByFlips(complex, flips).done;
-    advance((round + 0.6) / parameters.rounds);
-    for (int pass = 0; pass < parameters.optimizationPasses; ++pass)
-    {
-      report.optimized += optimizer.Run(limit);
-      report.flips += ImproveByFlips(complex, flips, observer).done;
-      advance((round + 0.6 + 0.4 * (pass + 1) / parameters.optimizationPasses) / parameters.rounds);
-    }
+    const double bound = parameters.distanceBound * parameters.distanceBound;
+    volumes.Restore(complex, mover, std::cos(parameters.angleFloor), [&](IdType p, const Vector3 & x) {
+      return (first.Project(complex, p, x) - x).squaredNorm() <= bound;
+    });
   }
   return report;
 }

@@ -10,8 +10,8 @@ namespace bone
 {
 namespace
 {
-constexpr double Lambda = 0.5;
-constexpr double Mu = -0.53;
+/** Share of the Laplacian's Laplacian taken off in a step; stable below 1/2. */
+constexpr double FairingStep = 0.4;
 /** Area of the faces at a point seen along their mean normal, as a share of their area: below this it is on a ridge. */
 constexpr double RidgeShare = 0.9;
 constexpr int    NoSurface = -1;
@@ -85,19 +85,25 @@ SurfaceTarget::Fair(const TetraComplex & complex, double distanceBound, int iter
     moving.push_back(p);
     around.push_back(std::move(neighbors));
   }
-  std::vector<Vector3> next(moving.size());
-  for (int step = 0; step < 2 * iterations; ++step)
+  // Steps down the energy of the Laplacian, which keeps volume to second order where a plain Laplacian shrinks.
+  std::vector<Vector3> laplacian(points.size(), Vector3::Zero()), next(moving.size());
+  const auto           umbrella = [&around](const std::vector<Vector3> & values, std::size_t i, IdType p) {
+    Vector3 mean = Vector3::Zero();
+    for (IdType q : around[i])
+    {
+      mean += values[q] / static_cast<double>(around[i].size());
+    }
+    return Vector3(mean - values[p]);
+  };
+  for (int step = 0; step < iterations; ++step)
   {
-    const double factor = step % 2 == 0 ? Lambda : Mu;
     for (std::size_t i = 0; i < moving.size(); ++i)
     {
-      Vector3 mean = Vector3::Zero();
-      for (IdType q : around[i])
-      {
-        mean += points[q] / static_cast<double>(around[i].size());
-      }
-      const Vector3 & x = points[moving[i]];
-      next[i] = x + factor * (mean - x);
+      laplacian[moving[i]] = umbrella(points, i, moving[i]);
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i)
+    {
+      next[i] = points[moving[i]] - FairingStep * umbrella(laplacian, i, moving[i]);
     }
     for (std::size_t i = 0; i < moving.size(); ++i)
     {
@@ -126,6 +132,7 @@ SurfaceTarget::BuildTrees(const TetraComplex & complex)
     }
     return found.first->second;
   };
+  m_TreeOfSurface.assign(surfaces.surfaces.size(), -1);
   for (IdType t = 0; t < complex.Size(); ++t)
   {
     for (int i = 0; i < 4; ++i)
@@ -134,8 +141,9 @@ SurfaceTarget::BuildTrees(const TetraComplex & complex)
       {
         const Id4 &  c = complex.Cell(t);
         const auto & f = TetraFaces[i];
-        content[stratum({ complex.FaceSurfaces(t)[i] })].push_back(
-          { points[c[f[0]]], points[c[f[1]]], points[c[f[2]]] });
+        const int    surface = complex.FaceSurfaces(t)[i];
+        m_TreeOfSurface[surface] = stratum({ surface });
+        content[m_TreeOfSurface[surface]].push_back({ points[c[f[0]]], points[c[f[1]]], points[c[f[2]]] });
       }
     }
   }
@@ -176,6 +184,12 @@ SurfaceTarget::BuildTrees(const TetraComplex & complex)
   {
     m_Trees.emplace_back(std::move(triangles));
   }
+}
+
+double
+SurfaceTarget::SquaredDistance(int surface, const Vector3 & x) const
+{
+  return m_Trees[m_TreeOfSurface[surface]].FindNearest(x).squaredDistance;
 }
 
 Vector3

@@ -1,0 +1,47 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneMeshImprovement_h
+#define boneMeshImprovement_h
+
+#include "boneSmoothingKernel.h"
+
+namespace bone
+{
+/** Parameters of \ref ImproveMesh. Angles in rad; "cells below" have a smaller dihedral angle. */
+struct ImprovementParameters
+{
+  int    iterations{ 4 };      ///< of smoothing at the start
+  double distanceBound{ 0.3 }; ///< mm, how far boundary and interfaces may be faired, and their triangles changed
+  int    fairingIterations{ 10 };
+  int    rounds{ 3 };             ///< of smoothing, flips, repair and optimisation
+  int    optimizationPasses{ 2 }; ///< a round
+  double targetAngle{ 0.44 };     ///< cells below are flipped, and their inner points optimised
+  double repairAngle{ 0.35 };     ///< cells below have surface edges flipped and edges collapsed
+  double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
+  double gradation{ 0.8 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
+};
+
+struct ImprovementReport
+{
+  SmoothingReport smoothing;
+  std::size_t     flips{ 0 };     ///< inside regions
+  std::size_t     repairs{ 0 };   ///< surface edges flipped, edges collapsed at bad cells
+  std::size_t     splits{ 0 };    ///< edges inside regions halved
+  std::size_t     collapses{ 0 }; ///< of short edges inside regions
+  std::size_t     optimized{ 0 }; ///< points moved by optimisation
+};
+
+/** \brief Makes a valid layered mesh good to compute with.
+ *
+ * 1. Surface points go to their faired place (\ref SurfaceTarget), inner points to the mean of their neighbours.
+ * 2. In each round: inner points are smoothed, edges inside regions are halved and collapsed to the size that the
+ *    surfaces ask for (\ref InteriorRefinement; not in the last round), the regions get their volumes back (\ref
+ *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
+ * 3. The regions get their volumes back once more.
+ * Sequential; the result depends on the input alone. */
+ImprovementReport
+ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});
+} // namespace bone
+
+#endif

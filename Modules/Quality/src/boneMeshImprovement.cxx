@@ -1,0 +1,143 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneMeshImprovement.h"
+
+#include "boneInteriorRefinement.h"
+#include "boneVolumeKeeper.h"
+
+#include <cmath>
+
+namespace bone
+{
+namespace
+{
+/** Edges longer than this many sizes are halved, those shorter than the other collapsed. */
+constexpr double LongEdge = 1.5;
+constexpr double ShortEdge = 0.6;
+constexpr int    SmoothingsInRound = 2;
+
+class MeshImprover
+{
+public:
+  MeshImprover(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress)
+    : m_Complex(complex)
+    , m_Parameters(parameters)
+    , m_Progress(progress)
+    , m_Mover(complex)
+    , m_First(complex, 0.0, 0)
+    , m_Target(complex, parameters.distanceBound, parameters.fairingIterations)
+    , m_Volumes(complex)
+    , m_Optimizer(complex, m_Mover, m_Target)
+    , m_Repair(complex, m_Mover, m_First, parameters.distanceBound)
+  {}
+
+  ImprovementReport
+  Run()
+  {
+    const double steps = m_Parameters.rounds + 1.0;
+    Smooth(m_Parameters.iterations, SurfaceMotion::ToFairedPlace);
+    Advance(1.0 / steps);
+    for (int round = 0; round < m_Parameters.rounds; ++round)
+    {
+      Smooth(SmoothingsInRound, SurfaceMotion::None);
+      if (round + 1 < m_Parameters.rounds && m_Parameters.gradation > 0)
+      {
+        Refine();
+      }
+      m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.surfaceAngle));
+      ImproveWorst((round + 1) / steps, 1.0 / steps);
+    }
+    m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.repairAngle));
+    return m_Report;
+  }
+
+private:
+  void
+  Advance(double done) const
+  {
+    if (m_Progress)
+    {
+      m_Progress(done);
+    }
+  }
+
+  void
+  Smooth(int iterations, SurfaceMotion motion)
+  {
+    SmoothingParameters smoothing;
+    smoothing.surfaceMotion = motion;
+    for (int i = 0; i < iterations; ++i)
+    {
+      EnhancedIteration(m_Complex, m_Mover, m_Target, smoothing, m_Report.smoothing);
+      Advance(0.0);
+    }
+  }
+
+  void
+  Flip()
+  {
+    FlipParameters flips;
+    flips.targetAngle = m_Parameters.targetAngle;
+    m_Report.flips +=
+      ImproveByFlips(m_Complex, flips, [this](const FlipResult & flip) { m_Optimizer.Mark(flip.created); }).done;
+  }
+
+  void
+  Refine()
+  {
+    Flip();
+    InteriorRefinement refinement(m_Complex, m_Repair, m_Parameters.gradation);
+    m_Report.splits += refinement.Split(LongEdge);
+    m_Report.splits += refinement.Split(LongEdge);
+    Flip();
+    m_Report.collapses += refinement.Collapse(ShortEdge, LongEdge, std::cos(m_Parameters.repairAngle));
+    Smooth(SmoothingsInRound, SurfaceMotion::None);
+  }
+
+  void
+  Repair()
+  {
+    m_Report.repairs += m_Repair.Run(std::cos(m_Parameters.repairAngle),
+                                     [this](const std::vector<IdType> & cells) { m_Optimizer.Mark(cells); });
+  }
+
+  void
+  ImproveWorst(double done, double share)
+  {
+    m_Optimizer.MarkAll();
+    Flip();
+    Repair();
+    for (int pass = 0; pass < m_Parameters.optimizationPasses; ++pass)
+    {
+      Advance(done + share * pass / m_Parameters.optimizationPasses);
+      m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), std::cos(m_Parameters.surfaceAngle));
+      Flip();
+      Repair();
+    }
+  }
+
+  TetraComplex &                m_Complex;
+  const ImprovementParameters & m_Parameters;
+  const ProgressFunction &      m_Progress;
+  PointMover                    m_Mover;
+  SurfaceTarget                 m_First; ///< the surfaces as they were
+  SurfaceTarget                 m_Target;
+  VolumeKeeper                  m_Volumes;
+  PointOptimizer                m_Optimizer;
+  MeshRepair                    m_Repair;
+  ImprovementReport             m_Report;
+};
+} // namespace
+
+ImprovementReport
+ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress)
+{
+  ImprovementReport report = MeshImprover(complex, parameters, progress).Run();
+  if (progress)
+  {
+    progress(1.0);
+  }
+  return report;
+}
+} // namespace bone
