@@ -95,6 +95,18 @@ ToJson(const TilingReport & tiling)
            { "filledEnds", tiling.filledEnds } };
 }
 
+/** A measure's distribution; `unit` is what its values are multiplied by. The histogram has equal bins over `range`. */
+nlohmann::ordered_json
+DistributionJson(const QualitySummary & summary, double unit)
+{
+  return { { "minimum", summary.minimum * unit },
+           { "percentile1", summary.percentile1 * unit },
+           { "mean", summary.mean * unit },
+           { "maximum", summary.maximum * unit },
+           { "range", { summary.lower * unit, summary.upper * unit } },
+           { "histogram", summary.histogram } };
+}
+
 nlohmann::ordered_json
 ToJson(const LevelReport & level)
 {
@@ -107,9 +119,10 @@ ToJson(const LevelReport & level)
     json["regionVolumesMm3"][std::to_string(region)] = volume;
   }
   json["meanDensity"] = level.meanDensity;
-  json["dihedralAngleDegrees"] = { { "minimum", level.dihedral.minimum * Degrees },
-                                   { "percentile1", level.dihedral.percentile1 * Degrees },
-                                   { "mean", level.dihedral.mean * Degrees } };
+  json["dihedralAngleDegrees"] = DistributionJson(level.dihedral, Degrees);
+  json["radiusRatio"] = DistributionJson(level.radiusRatio, 1.0);
+  json["scaledJacobian"] = DistributionJson(level.scaledJacobian, 1.0);
+  json["edgeRatio"] = DistributionJson(level.edgeRatio, 1.0);
   if (level.distances)
   {
     json["labelDice"] = *level.dice;
@@ -144,6 +157,9 @@ DescribeLevel(const MeshArrays & mesh)
   }
   report.meanDensity = report.volume > 0.0 ? mass / report.volume : 0.0;
   report.dihedral = SummarizeQuality(mesh, QualityMeasure::MinimumDihedralAngle);
+  report.radiusRatio = SummarizeQuality(mesh, QualityMeasure::RadiusRatio);
+  report.scaledJacobian = SummarizeQuality(mesh, QualityMeasure::ScaledJacobian);
+  report.edgeRatio = SummarizeQuality(mesh, QualityMeasure::EdgeRatio);
   const MeshValidation validation = ValidateMesh(mesh);
   report.valid = validation.IsValid();
   report.validity = validation.Summary();

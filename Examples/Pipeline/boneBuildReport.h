@@ -25,6 +25,9 @@ struct LevelReport
   std::map<int, double> regionVolumes; ///< mm^3 by region
   double                meanDensity{ 0.0 };
   QualitySummary        dihedral; ///< smallest dihedral angle of each tetrahedron, rad
+  QualitySummary        radiusRatio;
+  QualitySummary        scaledJacobian;
+  QualitySummary        edgeRatio;
   bool                  valid{ false };
   std::string           validity;                    ///< "valid", or the first failed check
   double                densityErrorToLevel1{ 0.0 }; ///< root mean square, density units

@@ -18,8 +18,9 @@ namespace bone
  * was fitted in, so fit after this. Layers, slices and regions are kept. The work is done in double; where a mesh of
  * float coordinates cannot hold the result without an inverted cell, itk::ExceptionObject says so.
  *
- * Throws itk::ExceptionObject where the input is missing, has no cells, lacks valid face neighbours, or holds cells
- * that are flat or inverted. */
+ * Cells of the input that are flat or inverted are made positive first by moving inner and interface points (\ref
+ * Untangle). Throws itk::ExceptionObject where the input is missing, has no cells, lacks valid face neighbours, or
+ * where cells stay flat or inverted, with their number. */
 template <typename TMesh>
 class MeshToMeshFilter : public itk::ProcessObject
 {
@@ -53,7 +54,7 @@ protected:
   void
   GenerateData() final;
 
-  /** Whether an input with flat or inverted cells is an error. */
+  /** Whether cells of the input that are flat or inverted are to be made positive, or are an error. */
   virtual bool
   NeedsPositiveCells() const
   {
@@ -66,6 +67,8 @@ protected:
 private:
   MeshArrays
   TakeInput() const;
+  void
+  MakePositive(const MeshArrays & input, TetraComplex & complex) const;
 };
 } // namespace bone
 

@@ -6,6 +6,7 @@
 
 #include "boneMeshToMeshFilter.h"
 #include "boneQualityMeasures.h"
+#include "boneUntangle.h"
 
 #include <type_traits>
 
@@ -63,14 +64,26 @@ MeshToMeshFilter<TMesh>::TakeInput() const
   {
     itkExceptionMacro("The input mesh has no tetrahedra.");
   }
-  const std::size_t inverted = CountInverted(arrays);
-  if (inverted > 0 && this->NeedsPositiveCells())
-  {
-    itkExceptionMacro("" << inverted << " of the " << arrays.tetrahedra.size()
-                         << " tetrahedra of the input mesh are flat or inverted; give a mesh whose tetrahedra are all "
-                            "positively oriented.");
-  }
   return arrays;
+}
+
+template <typename TMesh>
+void
+MeshToMeshFilter<TMesh>::MakePositive(const MeshArrays & input, TetraComplex & complex) const
+{
+  const std::size_t inverted = CountInverted(input);
+  if (inverted == 0)
+  {
+    return;
+  }
+  const std::size_t left = Untangle(complex);
+  if (left > 0)
+  {
+    itkExceptionMacro("" << inverted << " of the " << input.tetrahedra.size()
+                         << " tetrahedra of the input mesh are flat or inverted, and " << left
+                         << " stay so however inner points are moved; give a mesh whose tetrahedra are all positively "
+                            "oriented.");
+  }
 }
 
 template <typename TMesh>
@@ -79,6 +92,10 @@ MeshToMeshFilter<TMesh>::GenerateData()
 {
   const MeshArrays input = this->TakeInput();
   TetraComplex     complex(input);
+  if (this->NeedsPositiveCells())
+  {
+    this->MakePositive(input, complex);
+  }
   this->Improve(complex, [this](double done) {
     this->UpdateProgress(static_cast<float>(done));
     if (this->GetAbortGenerateData())

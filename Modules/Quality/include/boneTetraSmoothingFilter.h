@@ -24,8 +24,8 @@ namespace bone
  * Laplacian and Smart are the plain forms that the paper compares with: the mean of all neighbours for all points,
  * without and with a test for inversion. Both shrink the body, and Laplacian may invert cells.
  *
- * Sequential in ascending order of points: the result does not depend on threads. Errors: \ref MeshToMeshFilter; an
- * inverted input is an error but for Laplacian. */
+ * Sequential in ascending order of points: the result does not depend on threads. Errors, and
+ * what is done about inverted cells of the input: \ref MeshToMeshFilter. Laplacian takes those as they are. */
 template <typename TMesh = DensityMesh<double>>
 class TetraSmoothingFilter : public MeshToMeshFilter<TMesh>
 {

@@ -259,6 +259,27 @@ TEST(TetraSmoothingFilter, InvertedInputIsAnErrorThatCounts)
   EXPECT_NO_THROW(filter->Update());
 }
 
+TEST(TetraSmoothingFilter, InvertedInputIsUntangledWhereInnerPointsCanDoIt)
+{
+  auto                 mesh = test::MakeBall(4, { 1, 1, 2 }, 12, 0.1, 1);
+  const SurfaceComplex surfaces = FindSurfaces(mesh);
+  std::size_t          moved = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    // Every third inner point far out of the cells around it.
+    if (surfaces.dimension[p] == 3 && p % 3 == 0)
+    {
+      mesh.points[p] += Vector3(4.0, -3.0, 5.0);
+      ++moved;
+    }
+  }
+  ASSERT_GT(moved, 0u);
+  ASSERT_GT(CountInverted(mesh), moved);
+  const auto made = Smooth(mesh, SmoothingMethod::Enhanced, 2);
+  EXPECT_EQ(CountInverted(made), 0u);
+  EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+}
+
 TEST(TetraSmoothingFilter, RefusesBadParametersAndInputs)
 {
   auto filter = FilterType::New();
