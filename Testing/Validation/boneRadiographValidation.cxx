@@ -13,6 +13,7 @@
 #include "boneMeshIO.h"
 #include "boneVoxelDRRImageFilter.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <ctime>
@@ -98,27 +99,21 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
   });
 }
 
-/** ITK's ray caster takes the volume's centre as origin and its axes as x, y, z. */
+/** ITK's ray caster turns no axes: points are turned about the image's origin. It counts what is above 0. */
 void
 TimeRayCaster(const CTImage * ct, const XRayGeometry * geometry, const std::vector<float> & reference)
 {
   using Interpolator = itk::RayCastInterpolateImageFunction<CTImage, double>;
-  const auto &                             view = geometry->GetView();
-  itk::ContinuousIndex<double, 3>          middle;
-  for (unsigned int k = 0; k < 3; ++k)
-  {
-    middle[k] = 0.5 * (static_cast<double>(ct->GetLargestPossibleRegion().GetSize(k)) - 1);
-  }
-  CTImage::PointType centre;
-  ct->TransformContinuousIndexToPhysicalPoint(middle, centre);
-  const auto inVolume = [&](const Vector3 & x) {
+  const auto &             view = geometry->GetView();
+  const CTImage::PointType origin = ct->GetOrigin();
+  const auto               inVolume = [&](const Vector3 & x) {
     CTImage::PointType point;
     for (unsigned int k = 0; k < 3; ++k)
     {
-      point[k] = 0;
+      point[k] = origin[k];
       for (unsigned int axis = 0; axis < 3; ++axis)
       {
-        point[k] += ct->GetDirection()(axis, k) * (x[axis] - centre[axis]);
+        point[k] += ct->GetDirection()(axis, k) * (x[axis] - origin[axis]);
       }
     }
     return point;
@@ -129,7 +124,7 @@ TimeRayCaster(const CTImage * ct, const XRayGeometry * geometry, const std::vect
     interpolator->SetInputImage(ct);
     interpolator->SetTransform(itk::IdentityTransform<double, 3>::New());
     interpolator->SetFocalPoint(inVolume(view.source));
-    interpolator->SetThreshold(-1e9);
+    interpolator->SetThreshold(0);
     for (int row = static_cast<int>(part); row < view.size[1]; row += 16)
     {
       for (int column = 0; column < view.size[0]; ++column)
@@ -161,6 +156,10 @@ main(int argc, char * argv[])
   try
   {
     const auto ct = ReadCT(argv[1]);
+    const auto voxels = ct->GetBufferedRegion().GetNumberOfPixels();
+    std::transform(ct->GetBufferPointer(), ct->GetBufferPointer() + voxels, ct->GetBufferPointer(), [](float value) {
+      return std::max(value, 0.0f);
+    });
     const auto geometry = ReadGeometry(argv[2]).front();
     for (int i = 3; i < argc; ++i)
     {

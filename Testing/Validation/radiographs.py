@@ -155,7 +155,8 @@ def speed_lines(times, cells, seconds):
 
 
 def speed(program):
-    text = run(program, f"--benchmark_filter={BENCHMARKS}", "--benchmark_format=json", "--benchmark_repetitions=5")
+    text = run(program, f"--benchmark_filter={BENCHMARKS}", "--benchmark_format=json", "--benchmark_repetitions=5",
+               "--benchmark_min_time=0.1")
     best = {}
     for entry in json.loads(text)["benchmarks"]:
         if entry["run_type"] != "iteration":
