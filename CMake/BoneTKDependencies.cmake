@@ -13,6 +13,7 @@ set(CMAKE_MESSAGE_LOG_LEVEL "${_bonetk_loglevel}")
 find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json REQUIRED)
+find_package(HDF5 REQUIRED COMPONENTS C CXX)
 find_package(Boost REQUIRED)
 find_package(Threads REQUIRED)
 

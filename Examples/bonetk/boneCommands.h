@@ -41,6 +41,10 @@ AddBuildCommand(CLI::App & app, Action & action);
 void
 AddDrrCommand(CLI::App & app, Action & action);
 void
+AddTrainCommand(CLI::App & app, Action & action);
+void
+AddSampleCommand(CLI::App & app, Action & action);
+void
 AddValidateCommand(CLI::App & app, Action & action);
 void
 AddInfoCommand(CLI::App & app, Action & action);

@@ -7,6 +7,7 @@
 #include "boneContourStack.h"
 #include "boneDensityHierarchy.h"
 #include "boneImageIO.h"
+#include "boneStatisticalModel.h"
 #include "boneXRayGeometry.h"
 
 #include <string>
@@ -25,6 +26,8 @@ std::string
 DescribeHierarchy(const DensityHierarchy<> & hierarchy);
 std::string
 DescribeView(const XRayGeometry & geometry);
+std::string
+DescribeModel(const StatisticalModel & model);
 std::string
 DescribeImage(const CTImage & image);
 /** \} */

@@ -9,6 +9,7 @@
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
 #include "boneMeshIO.h"
+#include "boneModelIO.h"
 
 #include <filesystem>
 #include <sstream>
@@ -68,6 +69,10 @@ Describe(const std::string & path)
   {
     return DescribeMesh(ReadMeshArrays(path));
   }
+  if (EndsIn(path, ".h5"))
+  {
+    return DescribeModel(*ReadStatisticalModel(path));
+  }
   if (EndsIn(path, ".hierarchy.json"))
   {
     return DescribeHierarchy(*ReadHierarchy(path));
@@ -117,7 +122,7 @@ AddInfoCommand(CLI::App & app, Action & action)
 {
   auto   path = std::make_shared<std::string>();
   auto * command = app.add_subcommand("info", "Say what is in a file, or in a folder with a DICOM series");
-  command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, surface or image")->required();
+  command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, statistical model, surface or image")->required();
   command->callback([path, &action] { action = [path](Session & session) { session.Print(Describe(*path)); }; });
 }
 } // namespace bone

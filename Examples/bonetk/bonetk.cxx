@@ -111,6 +111,8 @@ main(int argc, char ** argv)
   bone::AddSimplifyCommand(app, action);
   bone::AddBuildCommand(app, action);
   bone::AddDrrCommand(app, action);
+  bone::AddTrainCommand(app, action);
+  bone::AddSampleCommand(app, action);
   bone::AddValidateCommand(app, action);
   bone::AddInfoCommand(app, action);
   AddSharedOptions(app, session);

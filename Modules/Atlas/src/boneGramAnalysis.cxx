@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneGramAnalysis.h"
 
-#include <itkMultiThreaderBase.h>
+#include "boneParallelLoop.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -23,11 +23,7 @@ constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
 void
 InParallel(Eigen::Index count, const std::function<void(Eigen::Index)> & body)
 {
-  itk::MultiThreaderBase::New()->ParallelizeArray(
-    0,
-    static_cast<itk::SizeValueType>(count),
-    [&body](itk::SizeValueType i) { body(static_cast<Eigen::Index>(i)); },
-    nullptr);
+  ParallelLoop(static_cast<std::size_t>(count), 1, [&body](std::size_t i) { body(static_cast<Eigen::Index>(i)); });
 }
 
 /** Calls body(first row, rows) for fixed chunks of all rows. */

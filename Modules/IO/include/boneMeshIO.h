@@ -5,6 +5,7 @@
 #define boneMeshIO_h
 
 #include "boneDensityMesh.h"
+#include "boneTriangleSurface.h"
 
 #include <array>
 #include <string>
@@ -38,13 +39,6 @@ WriteDensityMesh(const DensityMesh<TCoordinate> * mesh, const std::string & path
   WriteMeshArrays(mesh->GetArrays(), path);
 }
 /** \} */
-
-/** A closed surface of triangles. */
-struct TriangleSurface
-{
-  std::vector<Vector3>               points;    ///< mm
-  std::vector<std::array<IdType, 3>> triangles; ///< counter-clockwise seen from outside
-};
 
 /** Reads a .ply, .vtp or .stl surface; polygons are cut into triangles, and a surface whose triangles look inward is
  * turned. Throws IOError where it is missing, broken, empty, not closed (an edge has not two triangles that run along

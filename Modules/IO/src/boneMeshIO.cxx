@@ -115,19 +115,6 @@ RequireClosed(const TriangleSurface & surface)
     Refuse("the surface is not closed: ", open.size(), " edges have one triangle; close its holes");
   }
 }
-
-// Six times the enclosed volume, positive where the triangles look outward.
-double
-EnclosedVolume(const TriangleSurface & surface)
-{
-  double        volume = 0;
-  const Vector3 origin = surface.points[surface.triangles[0][0]];
-  for (const auto & t : surface.triangles)
-  {
-    volume += (surface.points[t[0]] - origin).dot((surface.points[t[1]] - origin).cross(surface.points[t[2]] - origin));
-  }
-  return volume;
-}
 } // namespace
 
 MeshArrays

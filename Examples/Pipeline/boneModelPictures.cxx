@@ -1,0 +1,238 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneModelPictures.h"
+
+#include "boneDRRImageFilter.h"
+#include "bonePlaneView.h"
+#include "boneXRayGeometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bone
+{
+namespace
+{
+constexpr int Side = 420; // pixels of a panel's longer side
+constexpr int Head = 30;  // above each row, for its name
+
+/** Size of what is looked at, across and up, mm. */
+struct Extent
+{
+  Vector3 centre;
+  double  across;
+  double  height;
+};
+
+Extent
+FindExtent(const std::vector<std::vector<Vector3>> & shapes, const Vector3 & right, const Vector3 & up)
+{
+  const double big = std::numeric_limits<double>::max();
+  Vector3      lower(big, big, big), upper(-big, -big, -big);
+  Vector2      low(big, big), high(-big, -big);
+  for (const auto & points : shapes)
+  {
+    for (const Vector3 & x : points)
+    {
+      lower = lower.cwiseMin(x);
+      upper = upper.cwiseMax(x);
+      const Vector2 p(x.dot(right), x.dot(up));
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  Vector3 centre = 0.5 * (lower + upper);
+  centre += (0.5 * (low[0] + high[0]) - centre.dot(right)) * right + (0.5 * (low[1] + high[1]) - centre.dot(up)) * up;
+  return { centre, high[0] - low[0], high[1] - low[1] };
+}
+
+void
+FillTriangle(const std::array<Vector3, 3> & p, float value, Panel & panel, std::vector<double> & depth)
+{
+  const double area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+  if (!(std::abs(area) > 0))
+  {
+    return;
+  }
+  const auto range = [&p](int axis, int size) {
+    const auto [low, high] = std::minmax({ p[0][axis], p[1][axis], p[2][axis] });
+    return std::make_pair(std::max(0, static_cast<int>(std::ceil(low))), std::min(size - 1, static_cast<int>(std::floor(high))));
+  };
+  const auto [left, right] = range(0, panel.columns);
+  const auto [top, bottom] = range(1, panel.rows);
+  for (int row = top; row <= bottom; ++row)
+  {
+    for (int column = left; column <= right; ++column)
+    {
+      double w[3];
+      for (int i = 0; i < 3; ++i)
+      {
+        const Vector3 &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+        w[i] = ((b[0] - a[0]) * (row - a[1]) - (column - a[0]) * (b[1] - a[1])) / area;
+      }
+      if (w[0] < 0 || w[1] < 0 || w[2] < 0)
+      {
+        continue;
+      }
+      const double z = w[0] * p[0][2] + w[1] * p[1][2] + w[2] * p[2][2];
+      double &     nearest = depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(panel.columns) + static_cast<std::size_t>(column)];
+      if (z < nearest)
+      {
+        nearest = z;
+        panel.At(column, row) = value;
+      }
+    }
+  }
+}
+
+/** Coefficients with one mode at sd standard deviations. */
+Eigen::VectorXd
+OneMode(int mode, double sd)
+{
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(mode + 1);
+  coefficients[mode] = sd;
+  return coefficients;
+}
+
+std::string
+Title(const std::string & kind, int mode, double sd)
+{
+  return kind + ' ' + std::to_string(mode + 1) + (sd < 0 ? ": -3 SD" : sd > 0 ? ": +3 SD" : ": MEAN");
+}
+
+Panel
+Radiograph(const MeshArrays & mesh, const XRayGeometry * geometry)
+{
+  auto model = DensityMesh<double>::New();
+  model->SetArrays(mesh);
+  auto filter = DRRImageFilter<DensityMesh<double>, CTImage>::New();
+  filter->SetInput(model);
+  filter->SetGeometry(geometry);
+  filter->Update();
+  return ToPanel(filter->GetOutput());
+}
+} // namespace
+
+Panel
+ShadeSurface(const TriangleSurface & surface,
+             const Vector3 &         centre,
+             const Vector3 &         direction,
+             const Vector3 &         up,
+             double                  pixel,
+             int                     columns,
+             int                     rows)
+{
+  Panel panel;
+  panel.columns = columns;
+  panel.rows = rows;
+  const auto size = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  panel.values.assign(size, std::numeric_limits<float>::quiet_NaN());
+  std::vector<double> depth(size, std::numeric_limits<double>::max());
+  const Vector3       right = direction.cross(up);
+  const auto          normals = PointNormals(surface);
+  for (const auto & t : surface.triangles)
+  {
+    std::array<Vector3, 3> p;
+    Vector3                normal = Vector3::Zero();
+    for (int i = 0; i < 3; ++i)
+    {
+      const Vector3 x = surface.points[t[i]] - centre;
+      p[i] = Vector3(0.5 * columns + x.dot(right) / pixel, 0.5 * rows - x.dot(up) / pixel, x.dot(direction));
+      normal += normals[t[i]];
+    }
+    const Vector3 light = (-direction + 0.5 * up - 0.3 * right).normalized();
+    FillTriangle(p, static_cast<float>(0.15 + 0.85 * std::max(0.0, normal.normalized().dot(light))), panel, depth);
+  }
+  return panel;
+}
+
+PictureImage::Pointer
+DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direction, const Vector3 & up)
+{
+  const auto & content = model.GetContent();
+  modes = std::min(modes, static_cast<int>(content.shape.GetNumberOfModes()));
+  std::vector<IdType>               id;
+  TriangleSurface                   surface = ExteriorSurface(content.mean, id);
+  std::vector<std::vector<Vector3>> shapes;
+  for (int mode = 0; mode < modes; ++mode)
+  {
+    for (const double sd : { -3.0, 0.0, 3.0 })
+    {
+      shapes.push_back(UnstackPoints(content.shape.Synthesize(OneMode(mode, sd))));
+    }
+  }
+  const Extent extent = FindExtent(shapes, direction.cross(up), up);
+  const double pixel = 1.05 * std::max(extent.across, extent.height) / Side;
+  const int    columns = static_cast<int>(std::ceil(1.05 * extent.across / pixel)) + 20;
+  const int    rows = static_cast<int>(std::ceil(1.05 * extent.height / pixel));
+  Canvas       canvas(3 * columns, modes * (rows + Head));
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+  {
+    for (std::size_t p = 0; p < id.size(); ++p)
+    {
+      surface.points[p] = shapes[i][id[p]];
+    }
+    const int column = static_cast<int>(i % 3) * columns, row = static_cast<int>(i / 3) * (rows + Head);
+    canvas.DrawPanel(column, row + Head, ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows), { 0.0, 1.1 });
+    canvas.DrawText(column + 8, row + 8, Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
+  }
+  return canvas.GetImage();
+}
+
+PictureImage::Pointer
+DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up)
+{
+  std::vector<std::pair<std::string, std::vector<MeshArrays>>> rows(1);
+  rows[0].first = "SHAPE";
+  for (const double sd : { -3.0, 0.0, 3.0 })
+  {
+    rows[0].second.push_back(model.Synthesize(OneMode(0, sd)));
+  }
+  if (model.GetContent().density.GetNumberOfModes() > 0)
+  {
+    rows.emplace_back("DENSITY", std::vector<MeshArrays>());
+    for (const double sd : { -3.0, 0.0, 3.0 })
+    {
+      rows[1].second.push_back(model.Synthesize(Eigen::VectorXd(), OneMode(0, sd)));
+    }
+  }
+  Vector3 lower = rows[0].second[0].points.front(), upper = lower;
+  for (const MeshArrays & mesh : rows[0].second)
+  {
+    for (const Vector3 & x : mesh.points)
+    {
+      lower = lower.cwiseMin(x);
+      upper = upper.cwiseMax(x);
+    }
+  }
+  auto geometry = XRayGeometry::New();
+  geometry->SetView(XRayGeometry::Framing(lower, upper, direction, up, 900.0, 1100.0, Side));
+  Panel        mean = Radiograph(rows[0].second[1], geometry);
+  const double brightest = *std::max_element(mean.values.begin(), mean.values.end());
+  Canvas       canvas(5 * mean.columns, static_cast<int>(rows.size()) * (mean.rows + Head));
+  for (std::size_t r = 0; r < rows.size(); ++r)
+  {
+    const int top = static_cast<int>(r) * (mean.rows + Head);
+    for (int i = 0; i < 3; ++i)
+    {
+      Panel panel = Radiograph(rows[r].second[static_cast<std::size_t>(i)], geometry);
+      canvas.DrawPanel(i * mean.columns, top + Head, panel, { 0.0, brightest });
+      canvas.DrawText(i * mean.columns + 8, top + 8, Title(rows[r].first, 0, 3.0 * (i - 1)));
+      if (i == 1)
+      {
+        continue;
+      }
+      for (std::size_t k = 0; k < panel.values.size(); ++k)
+      {
+        panel.values[k] -= mean.values[k];
+      }
+      const int column = (i == 0 ? 3 : 4) * mean.columns;
+      canvas.DrawDifference(column, top + Head, panel, 0.5 * brightest);
+      canvas.DrawText(column + 8, top + 8, i == 0 ? "-3 SD - MEAN" : "+3 SD - MEAN");
+    }
+  }
+  return canvas.GetImage();
+}
+} // namespace bone

@@ -1,0 +1,78 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef bonePopulation_h
+#define bonePopulation_h
+
+#include "boneAtlasRegistrationFilter.h"
+#include "boneImageIO.h"
+#include "boneMeshIO.h"
+
+#include <string>
+#include <vector>
+
+namespace bone
+{
+/** One subject of a population: its bone as a mesh or a closed surface, and its CT where its density is to be fitted. */
+struct SubjectFiles
+{
+  std::string name;  ///< of the shape's file, without folder and extension
+  std::string shape; ///< .vtu, or .ply, .vtp, .stl
+  std::string ct;    ///< empty: none
+};
+
+/** Reads a list of subjects, one a line: the shape's file, and after a comma that of the CT where there is one. Names are
+ * relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError. */
+std::vector<SubjectFiles>
+ReadSubjectList(const std::string & path);
+
+/** The density of a model at the sample points of another mesh's cells, fitted there with one degree; points outside the
+ * model take the nearest place on its boundary. The mesh's density is replaced. Throws itk::ExceptionObject where the
+ * model has no density. */
+void
+FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh);
+
+/** \class PopulationRegistration
+ * \brief Brings subjects onto the topology of a standard model, with their densities (paper 6.1): registration, then the
+ * density fit. */
+class PopulationRegistration
+{
+public:
+  PopulationRegistration(DensityMesh<double>::Pointer standard, int degree);
+
+  /** The filter that registers, for its parameters and what the last run did. */
+  AtlasRegistrationFilter<> *
+  GetFilter()
+  {
+    return m_Register;
+  }
+
+  /** The standard model on the subject. A mesh that has the standard's tetrahedra is taken as it is; others are
+   * registered. Density comes from the CT, or else from the subject's own mesh; a surface alone has none. For a mirrored
+   * subject the result lies in the reflected space. */
+  MeshArrays
+  Bring(const SubjectFiles & subject);
+
+  /** The same for a surface and a CT in memory; no CT: no density. */
+  MeshArrays
+  Bring(const TriangleSurface & surface, const CTImage * ct);
+
+  /** Whether the last subject had to be registered. */
+  bool
+  WasRegistered() const
+  {
+    return m_Registered;
+  }
+
+private:
+  void
+  FitImage(const CTImage * ct, MeshArrays & mesh) const;
+
+  DensityMesh<double>::Pointer         m_Standard;
+  int                                  m_Degree;
+  AtlasRegistrationFilter<>::Pointer   m_Register;
+  bool                                 m_Registered{ false };
+};
+} // namespace bone
+
+#endif

@@ -1,0 +1,177 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneDescribe.h"
+#include "boneOptions.h"
+#include "bonePopulation.h"
+#include "boneStagingFolder.h"
+
+#include "boneIOError.h"
+#include "boneModelIO.h"
+#include "boneStatisticalModelEstimator.h"
+
+#include <iomanip>
+#include <map>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+struct Options
+{
+  std::string list;
+  std::string standard;
+  int         degree{ 2 };
+  bool        similarity{ false };
+  bool        combined{ false };
+  bool        volumeWeighted{ false };
+  double      variance{ 0.98 };
+  int         modes{ 0 };
+  bool        rejectOutliers{ false };
+  std::string mirror{ "never" };
+  std::string interior{ "harmonic" };
+  std::string method{ "focus" };
+  std::string registered;
+  std::string output;
+};
+
+std::string
+RegistrationLine(const SubjectFiles & subject, const PopulationRegistration & population, const RegistrationReport & report)
+{
+  std::ostringstream os;
+  os << std::left << std::setw(28) << subject.name << std::setprecision(3);
+  if (!population.WasRegistered())
+  {
+    os << "on the standard model's topology";
+  }
+  else
+  {
+    os << report.surfaceDistance << " mm to the subject, " << report.subjectDistance << " mm back"
+       << (report.mirrored ? ", mirrored" : "");
+    if (report.untangling.before > 0)
+    {
+      os << ", " << report.untangling.before << " inverted tetrahedra repaired";
+    }
+  }
+  os << '\n';
+  return os.str();
+}
+
+void
+SetFilter(const Options & options, AtlasRegistrationFilter<> * filter)
+{
+  static const std::map<std::string, MirrorMode> mirrors = { { "never", MirrorMode::Never },
+                                                             { "always", MirrorMode::Always },
+                                                             { "try", MirrorMode::Try } };
+  filter->SetMirror(mirrors.at(options.mirror));
+  filter->SetInterior(options.interior == "harmonic" ? InteriorRule::Harmonic : InteriorRule::EigenFrame);
+  filter->SetMethod(options.method == "focus" ? DeformationMethod::AdaptiveFocus : DeformationMethod::NonRigidICP);
+}
+
+void
+Run(const Options & options, Session & session)
+{
+  VerifyExtension(options.output, { ".h5" });
+  const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
+  const std::string standard = options.standard.empty() ? subjects.front().shape : options.standard;
+  if (standard.size() < 4 || standard.compare(standard.size() - 4, 4, ".vtu") != 0)
+  {
+    throw UsageError("the standard model " + standard + " must be a mesh (.vtu): put one first in the list, or give --standard");
+  }
+  PopulationRegistration population(ReadDensityMesh(standard), options.degree);
+  SetFilter(options, population.GetFilter());
+  session.Watch(population.GetFilter(), "registration");
+
+  // Registered subjects go to files, so that only one is in memory at a time.
+  StagingFolder folder(options.registered.empty() ? options.output + ".registered" : options.registered);
+  auto          set = FileTrainingSet::New();
+  for (const SubjectFiles & subject : subjects)
+  {
+    MeshArrays mesh;
+    try
+    {
+      mesh = population.Bring(subject);
+    }
+    catch (const IOError &)
+    {
+      throw;
+    }
+    catch (const itk::ExceptionObject & error)
+    {
+      throw IOError(subject.shape, ErrorLine(error));
+    }
+    std::ostringstream name;
+    name << folder.GetPath() << '/' << std::setw(4) << std::setfill('0') << set->GetNumberOfSubjects() + 1 << '_' << subject.name
+         << ".vtu";
+    WriteMeshArrays(mesh, name.str());
+    set->AddSubject(subject.name, name.str());
+    session.Print(RegistrationLine(subject, population, population.GetFilter()->GetReport()));
+  }
+
+  auto estimator = StatisticalModelEstimator<>::New();
+  estimator->SetInput(set);
+  estimator->SetAlignment(options.similarity ? AlignmentKind::Similarity : AlignmentKind::Rigid);
+  estimator->SetCombined(options.combined);
+  estimator->SetVolumeWeighted(options.volumeWeighted);
+  estimator->SetVarianceProportion(options.variance);
+  estimator->SetMaximumModes(options.modes);
+  estimator->SetRejectOutliers(options.rejectOutliers);
+  session.Watch(estimator, "training");
+  estimator->Update();
+  for (const SubjectDeviation & subject : estimator->GetSubjectDeviations())
+  {
+    if (subject.outlier)
+    {
+      std::ostringstream os;
+      os << subject.name << " is an outlier: " << subject.shape << " mm and " << subject.density
+         << " density units from the mean (scores " << subject.shapeScore << ", " << subject.densityScore << ')'
+         << (subject.used ? "" : "; left out");
+      session.Warn(os.str());
+    }
+  }
+  WriteStatisticalModel(estimator->GetOutput(), options.output);
+  if (!options.registered.empty())
+  {
+    folder.Commit();
+  }
+  session.Print('\n' + DescribeModel(*estimator->GetOutput()));
+}
+} // namespace
+
+void
+AddTrainCommand(CLI::App & app, Action & action)
+{
+  auto   options = std::make_shared<Options>();
+  auto * command = app.add_subcommand("train", "Train a statistical model of shape and density from a list of subjects");
+  command
+    ->add_option("list",
+                 options->list,
+                 "Text file with a subject a line: mesh (.vtu) or closed surface (.ply, .vtp, .stl), and after a comma its "
+                 "CT, if its density is to be fitted. Subjects on another topology than the standard model's are registered")
+    ->required();
+  command->add_option("--standard", options->standard, "Standard model (.vtu); default: the list's first subject");
+  command->add_option("--degree", options->degree, "Degree of densities that are fitted, 0 to 8; default 2")
+    ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
+  command->add_flag("--similarity", options->similarity, "Take size out of the shapes");
+  command->add_flag("--combined", options->combined, "Combined modes of shape and density too");
+  command->add_flag("--volume-weighted", options->volumeWeighted, "Weigh densities by the volume of tetrahedra");
+  command->add_option("--variance", options->variance, "Share of the variance that the modes explain; default 0.98")
+    ->check(Between(0.01, 1));
+  command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")->check(Between(0, 100000));
+  command->add_flag("--reject-outliers", options->rejectOutliers, "Leave outliers out");
+  command->add_option("--mirror", options->mirror, "Reflect subjects: never (default), always, or try what fits better")
+    ->check(CLI::IsMember({ "never", "always", "try" }).description(""))
+    ->type_name("never|always|try");
+  command->add_option("--method", options->method, "Deformation of the surface: adaptive focus (default) or non-rigid ICP")
+    ->check(CLI::IsMember({ "focus", "icp" }).description(""))
+    ->type_name("focus|icp");
+  command->add_option("--interior", options->interior, "How interior points follow: harmonic (default) or frames")
+    ->check(CLI::IsMember({ "harmonic", "frames" }).description(""))
+    ->type_name("harmonic|frames");
+  command->add_option("--registered", options->registered, "Folder to keep the registered subjects in; default: none");
+  command->add_option("-o,--output", options->output, "Statistical model to write (.h5)")->required();
+  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+}
+} // namespace bone

@@ -1,0 +1,96 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneAtlasRegistration_h
+#define boneAtlasRegistration_h
+
+#include "boneInteriorDeformation.h"
+#include "boneSurfaceAlignment.h"
+#include "boneSurfaceDeformation.h"
+
+#include <functional>
+
+namespace bone
+{
+/** How the exterior surface is deformed. */
+enum class DeformationMethod : int
+{
+  AdaptiveFocus = 0, ///< the paper's
+  NonRigidICP = 1    ///< optimal-step non-rigid ICP, for comparison
+};
+
+/** Whether a subject may be the mirror image of the standard model (a left bone of a right one). */
+enum class MirrorMode : int
+{
+  Never = 0,
+  Always = 1,
+  Try = 2 ///< both are aligned; the nearer one is taken
+};
+
+/** Parameters of \ref StandardModel::Register. */
+struct RegistrationParameters
+{
+  SurfaceAlignmentParameters alignment;
+  MirrorMode                 mirror{ MirrorMode::Never };
+  DeformationMethod          method{ DeformationMethod::AdaptiveFocus };
+  AdaptiveFocusParameters    focus;
+  NonRigidICPParameters      nonRigid;
+  InteriorRule               interior{ InteriorRule::Harmonic };
+  UntanglingParameters       untangling;
+};
+
+/** What a registration did. */
+struct RegistrationReport
+{
+  AffineMap        alignment;                ///< standard -> subject (reflected, where mirrored)
+  double           alignmentDistance{ 0.0 }; ///< root mean square of the pairs that count, mm
+  bool             mirrored{ false };        ///< the subject was reflected at x = 0 first, and the result lies there
+  double           surfaceDistance{ 0.0 };   ///< mean distance of the model's exterior points to the subject, mm
+  double           subjectDistance{ 0.0 };   ///< mean distance of the subject's points to the model, mm
+  UntanglingReport untangling;
+};
+
+/** x -> -x in the first coordinate. */
+std::vector<Vector3>
+ReflectPoints(std::vector<Vector3> points);
+
+/** \class StandardModel
+ * \brief A tetrahedral mesh that is carried to subjects (paper 6.1); what depends on it alone is computed once.
+ *
+ * Const use is safe from many threads. */
+class StandardModel
+{
+public:
+  /** Takes points, tetrahedra and neighbours (computed where absent). Throws std::invalid_argument where there are no
+   * tetrahedra, or flat or inverted ones. */
+  explicit StandardModel(const MeshArrays & mesh);
+
+  /** The mesh's points on the subject, and what was done. Throws std::invalid_argument where the subject has no surface,
+   * std::runtime_error with their number where tetrahedra are left inverted. */
+  std::vector<Vector3>
+  Register(const TriangleSurface &             subject,
+           const RegistrationParameters &      parameters,
+           RegistrationReport &                report,
+           const std::function<void(double)> & progress = [](double) {}) const;
+
+  const TriangleSurface &
+  GetSurface() const
+  {
+    return m_Surface;
+  }
+  /** The mesh's ids of the surface's points. */
+  const std::vector<IdType> &
+  GetSurfacePointIds() const
+  {
+    return m_SurfaceId;
+  }
+
+private:
+  MeshArrays                           m_Mesh;
+  std::vector<IdType>                  m_SurfaceId;
+  TriangleSurface                      m_Surface;
+  std::unique_ptr<InteriorDeformation> m_Interior;
+};
+} // namespace bone
+
+#endif

@@ -1,0 +1,117 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneAtlasRegistrationFilter_h
+#define boneAtlasRegistrationFilter_h
+
+#include "boneAtlasRegistration.h"
+#include "boneDensityMesh.h"
+
+#include <itkProcessObject.h>
+#include <itkSimpleDataObjectDecorator.h>
+
+namespace bone
+{
+/** \class AtlasRegistrationFilter
+ * \brief Carries a standard model to a subject: same topology, the subject's shape (paper 6.1).
+ *
+ * Inputs: the standard model, a mesh of positive tetrahedra, and the subject, either a mesh, whose exterior surface is
+ * taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra, layers, slices and regions on
+ * points that lie on the subject; no density, which is fitted after (DensityFitFilter).
+ *
+ * 1. Alignment by principal axes and iterative closest points, affine by default (\ref AlignSurfaces).
+ * 2. The exterior surface is deformed: adaptive focus (default, \ref DeformAdaptiveFocus) or non-rigid ICP
+ *    (\ref DeformNonRigidICP).
+ * 3. Interior points follow: a harmonic displacement (default) or the paper's eigen-frames (\ref InteriorDeformation).
+ * 4. Inverted tetrahedra are repaired within bounds (\ref UntangleMesh). If some are left, the filter throws and says
+ *    how many: no inverted tetrahedron leaves it.
+ *
+ * Mirror: Never (default), Always, or Try: the subject is reflected at x = 0 first, and the output lies in the reflected
+ * space (GetReport().mirrored); ReflectPoints brings points back.
+ *
+ * Results do not depend on the number of threads. Throws itk::ExceptionObject. */
+template <typename TMesh = DensityMesh<double>>
+class AtlasRegistrationFilter : public itk::ProcessObject
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(AtlasRegistrationFilter);
+  using Self = AtlasRegistrationFilter;
+  using Superclass = itk::ProcessObject;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(AtlasRegistrationFilter, itk::ProcessObject);
+
+  using MeshType = TMesh;
+  using SurfaceType = itk::SimpleDataObjectDecorator<TriangleSurface>;
+
+  itkSetInputMacro(Standard, TMesh);
+  itkGetInputMacro(Standard, TMesh);
+  itkSetInputMacro(Subject, TMesh);
+  itkGetInputMacro(Subject, TMesh);
+  /** In place of a subject's mesh. */
+  void
+  SetSubjectSurface(const TriangleSurface & surface);
+
+  TMesh *
+  GetOutput();
+  const TMesh *
+  GetOutput() const;
+
+  itkSetEnumMacro(Alignment, AlignmentKind);
+  itkGetEnumMacro(Alignment, AlignmentKind);
+  itkSetEnumMacro(Mirror, MirrorMode);
+  itkGetEnumMacro(Mirror, MirrorMode);
+  itkSetEnumMacro(Method, DeformationMethod);
+  itkGetEnumMacro(Method, DeformationMethod);
+  itkSetEnumMacro(Interior, InteriorRule);
+  itkGetEnumMacro(Interior, InteriorRule);
+  /** How far the repair may move exterior points, mm; default 0.5. */
+  itkSetMacro(ExteriorBound, double);
+  itkGetConstMacro(ExteriorBound, double);
+  /** What the last run did. */
+  const RegistrationReport &
+  GetReport() const
+  {
+    return m_Report;
+  }
+
+  using Superclass::MakeOutput;
+  itk::DataObject::Pointer
+  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
+
+protected:
+  AtlasRegistrationFilter();
+  ~AtlasRegistrationFilter() override = default;
+  void
+  VerifyPreconditions() ITKv5_CONST override;
+  void
+  GenerateOutputInformation() override
+  {}
+  void
+  GenerateData() override;
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+
+private:
+  TriangleSurface
+  TakeSubject() const;
+
+  AlignmentKind                  m_Alignment{ AlignmentKind::Affine };
+  MirrorMode                     m_Mirror{ MirrorMode::Never };
+  DeformationMethod              m_Method{ DeformationMethod::AdaptiveFocus };
+  InteriorRule                   m_Interior{ InteriorRule::Harmonic };
+  double                         m_ExteriorBound{ 0.5 };
+  RegistrationReport             m_Report;
+  std::unique_ptr<StandardModel> m_Standard; // of the standard it was made of, for a population of subjects
+  itk::ModifiedTimeType          m_StandardTime{ 0 };
+};
+
+extern template class AtlasRegistrationFilter<DensityMesh<double>>;
+} // namespace bone
+
+#ifndef ITK_MANUAL_INSTANTIATION
+#include "boneAtlasRegistrationFilter.hxx"
+#endif
+
+#endif
