@@ -155,6 +155,38 @@ class Commands(TestCase):
         self.assertGreater(counts[0], 0.8 * counts[1])
         self.refuse("contours", "ct.nii.gz", "--init", "c.vtp", "--follow", "-o", "x.vtp", code=2)
 
+    def test_atlas(self):
+        """Three subjects, each on its own mesh: one is the standard model, the others are registered."""
+        lines = []
+        for subject in range(3):
+            self.succeed("phantom", "--bone", "hemipelvis", "--subject", subject, "--spacing", 2, "-o", f"ct{subject}.nii.gz",
+                         "--labels", "l.nii.gz")
+            self.succeed("contours", f"ct{subject}.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8,
+                         "-o", "c.vtp")
+            self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+            self.succeed("smooth", "m.vtu", "--swap", "-o", f"m{subject}.vtu")
+            lines.append(f"m{subject}.vtu, ct{subject}.nii.gz")
+        with open("subjects.txt", "w") as file:
+            file.write("# shape, CT\n" + "\n".join(lines) + "\n")
+        out, _ = self.succeed("train", "subjects.txt", "--degree", 1, "--variance", 1, "--registered", "meshes", "-o", "atlas.h5")
+        self.assertIn("shape modes                 2", out)
+        self.assertEqual(len(os.listdir("meshes")), 3)
+        for mesh in os.listdir("meshes"):
+            self.succeed("validate", "meshes/" + mesh)
+        out, _ = self.succeed("info", "atlas.h5")
+        self.assertIn("statistical model", out)
+        self.succeed("sample", "atlas.h5", "-o", "mean.vtu")
+        self.succeed("validate", "mean.vtu")
+        self.succeed("sample", "atlas.h5", "--shape", "1=1", "2=-0.5", "--density", "1=1", "-o", "s.vtu")
+        self.succeed("sample", "atlas.h5", "--random", 3, "-o", "r.vtu")
+        self.refuse("sample", "atlas.h5", "--shape", "3=1", "-o", "x.vtu", code=2, says="2 such modes")
+        self.refuse("sample", "atlas.h5", "--shape", "1", "-o", "x.vtu", code=2)
+        self.refuse("sample", "mean.vtu", "-o", "x.vtu")
+        self.refuse("train", "missing.txt", "-o", "x.h5")
+        with open("missing.txt", "w") as file:
+            file.write("m0.vtu\nnone.vtu\n")
+        self.refuse("train", "missing.txt", "--quiet", "-o", "x.h5", says="none.vtu")
+
     def test_quiet(self):
         self.assertEqual(self.succeed("phantom", "--quiet", "--spacing", 4, "-o", "ct.nii.gz"), ("", ""))
 

@@ -2,14 +2,32 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 
-// Figures of the registration of a standard model to surfaces whose correspondence is known:
-// boneAtlasValidation STANDARD.vtu REFERENCE.ply SUBJECT.ply... ; see atlas.py.
+// Figures of the atlas, as JSON lines; atlas.py makes the report of them:
+//   boneAtlasValidation registration STANDARD.vtu REFERENCE.ply SUBJECT.ply...   correspondence is known
+//   boneAtlasValidation frames|icp ...                                           the same with the alternatives
+//   boneAtlasValidation population STANDARD.vtu SUBJECTS                         phantoms with known factors
+//   boneAtlasValidation memory MESH.vtu SUBJECTS                                 large training sets
 
 #include "boneAtlasRegistration.h"
+#include "boneDensityFitKernel.h"
+#include "boneHemipelvisPhantom.h"
 #include "boneMeshIO.h"
 #include "boneModelEvaluation.h"
+#include "boneStatisticalModelEstimator.h"
+
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <itkMultiThreaderBase.h>
+
+#include <Eigen/QR>
+#include <nlohmann/json.hpp>
 
 #include <ctime>
+#include <fstream>
 #include <iostream>
 #include <numeric>
 #include <random>
@@ -17,39 +35,7 @@
 namespace
 {
 using namespace bone;
-
-struct Place
-{
-  int     triangle;
-  Vector3 weights;
-};
-
-/** Throws the surface into a pose and shuffles its vertices and triangles. */
-AffineMap
-Disguise(TriangleSurface & surface, unsigned seed)
-{
-  std::mt19937                     generator(seed);
-  std::normal_distribution<double> normal;
-  Eigen::Quaterniond q(normal(generator), normal(generator), normal(generator), normal(generator));
-  AffineMap          pose;
-  pose.linear = q.normalized().toRotationMatrix();
-  pose.translation = 200 * Vector3(normal(generator), normal(generator), normal(generator));
-  std::vector<IdType> order(surface.points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), generator);
-  std::vector<Vector3> points(surface.points.size());
-  for (std::size_t p = 0; p < points.size(); ++p)
-  {
-    points[order[p]] = pose(surface.points[p]);
-  }
-  surface.points = points;
-  for (auto & t : surface.triangles)
-  {
-    t = { order[t[0]], order[t[1]], order[t[2]] };
-  }
-  std::shuffle(surface.triangles.begin(), surface.triangles.end(), generator);
-  return pose;
-}
+using nlohmann::json;
 
 /** Processor seconds of all threads. */
 double
@@ -70,99 +56,449 @@ Mean(const std::vector<double> & values)
 {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
+
+/** Throws the surface into a pose and shuffles its vertices and triangles. */
+AffineMap
+Disguise(TriangleSurface & surface, unsigned seed)
+{
+  std::mt19937                     generator(seed);
+  std::normal_distribution<double> normal;
+  const Eigen::Quaterniond q(normal(generator), normal(generator), normal(generator), normal(generator));
+  AffineMap                pose;
+  pose.linear = q.normalized().toRotationMatrix();
+  pose.translation = 200 * Vector3(normal(generator), normal(generator), normal(generator));
+  std::vector<IdType> order(surface.points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), generator);
+  std::vector<Vector3> points(surface.points.size());
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    points[order[p]] = pose(surface.points[p]);
+  }
+  surface.points = points;
+  for (auto & t : surface.triangles)
+  {
+    t = { order[t[0]], order[t[1]], order[t[2]] };
+  }
+  std::shuffle(surface.triangles.begin(), surface.triangles.end(), generator);
+  return pose;
+}
+
+/** Where the standard model's exterior points belong on a subject, by the data's own correspondence. */
+std::vector<Vector3>
+KnownPlaces(const TriangleSurface & source, const DirectedSurface & reference, const TriangleSurface & subject, const AffineMap & pose)
+{
+  std::vector<Vector3> places;
+  for (const Vector3 & x : source.points)
+  {
+    const auto    match = reference.FindAny(x);
+    const auto &  t = reference.GetSurface().triangles[static_cast<std::size_t>(match.triangle)];
+    const Vector3 w = reference.Weights(match.triangle, match.point);
+    places.push_back(pose(w[0] * subject.points[t[0]] + w[1] * subject.points[t[1]] + w[2] * subject.points[t[2]]));
+  }
+  return places;
+}
+
+void
+PrintModes(const char * name, const std::vector<ModelQuality> & quality)
+{
+  for (const ModelQuality & q : quality)
+  {
+    std::cout << json{ { "model", name },
+                       { "modes", q.modes },
+                       { "compactness", q.compactness },
+                       { "generalisation", q.generalisation.mean },
+                       { "generalisationError", q.generalisation.standardError },
+                       { "specificity", q.specificity.mean },
+                       { "specificityError", q.specificity.standardError } }
+              << std::endl;
+  }
+}
+
+void
+Registration(const std::vector<std::string> & files, const RegistrationParameters & parameters, bool evaluate)
+{
+  const StandardModel     model(ReadMeshArrays(files[0]));
+  const DirectedSurface   reference(ReadTriangleSurface(files[1]));
+  const TriangleSurface & source = model.GetSurface();
+  std::vector<std::vector<Vector3>> found, truth;
+  std::vector<double>               all;
+  for (std::size_t s = 2; s < files.size(); ++s)
+  {
+    TriangleSurface      subject = ReadTriangleSurface(files[s]);
+    const auto           original = subject;
+    const AffineMap      pose = Disguise(subject, static_cast<unsigned>(s + 1));
+    RegistrationReport   report;
+    const double         start = Cpu();
+    const auto           points = model.Register(subject, parameters, report);
+    const double         seconds = Cpu() - start;
+    std::vector<Vector3> surface;
+    for (const IdType p : model.GetSurfacePointIds())
+    {
+      surface.push_back(points[p]);
+    }
+    const auto          expected = KnownPlaces(source, reference, original, pose);
+    std::vector<double> error;
+    for (std::size_t p = 0; p < surface.size(); ++p)
+    {
+      error.push_back((surface[p] - expected[p]).norm());
+    }
+    all.insert(all.end(), error.begin(), error.end());
+    std::cout << json{ { "subject", files[s].substr(files[s].rfind('/') + 1) },
+                       { "alignment", report.alignmentDistance },
+                       { "surface", report.surfaceDistance },
+                       { "back", report.subjectDistance },
+                       { "mean", Mean(error) },
+                       { "median", Percentile(error, 0.5) },
+                       { "p95", Percentile(error, 0.95) },
+                       { "tangled", report.untangling.before },
+                       { "inverted", report.untangling.after },
+                       { "seconds", seconds } }
+              << std::endl;
+    found.push_back(surface);
+    truth.push_back(expected);
+  }
+  std::cout << json{ { "all", "median" }, { "median", Percentile(all, 0.5) }, { "mean", Mean(all) } } << std::endl;
+  if (evaluate)
+  {
+    PrintModes("registered", EvaluateShapes(found, EvaluationParameters()));
+    PrintModes("known", EvaluateShapes(truth, EvaluationParameters()));
+  }
+}
+
+/** The periosteal surface of a phantom, from its function on a grid of 1.5 mm. */
+TriangleSurface
+SurfaceOf(const PhantomModel & phantom)
+{
+  constexpr double    Spacing = 1.5;
+  vtkNew<vtkImageData> grid;
+  double              origin[3];
+  int                 size[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    const auto extent = phantom.GetExtent(Vector3::Unit(i));
+    origin[i] = extent.lower - 3 * Spacing;
+    size[i] = static_cast<int>((extent.upper - extent.lower) / Spacing) + 7;
+  }
+  grid->SetDimensions(size);
+  grid->SetOrigin(origin);
+  grid->SetSpacing(Spacing, Spacing, Spacing);
+  grid->AllocateScalars(VTK_DOUBLE, 1);
+  auto * values = static_cast<double *>(grid->GetScalarPointer());
+  itk::MultiThreaderBase::New()->ParallelizeArray(
+    0,
+    static_cast<itk::SizeValueType>(size[2]),
+    [&](itk::SizeValueType k) {
+      double * value = values + k * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+      for (int j = 0; j < size[1]; ++j)
+      {
+        for (int i = 0; i < size[0]; ++i)
+        {
+          const Vector3 x(origin[0] + Spacing * i, origin[1] + Spacing * j, origin[2] + Spacing * static_cast<double>(k));
+          *value++ = phantom.EvaluateLevels(x)[0];
+        }
+      }
+    },
+    nullptr);
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputData(grid);
+  edges->SetValue(0, 0.0);
+  edges->ComputeNormalsOff();
+  edges->Update();
+  vtkPolyData *   data = edges->GetOutput();
+  TriangleSurface surface;
+  for (vtkIdType p = 0; p < data->GetNumberOfPoints(); ++p)
+  {
+    surface.points.emplace_back(data->GetPoint(p));
+  }
+  for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
+  {
+    vtkIdType         count = 0;
+    const vtkIdType * ids = nullptr;
+    data->GetCellPoints(c, count, ids);
+    surface.triangles.push_back({ static_cast<IdType>(ids[0]), static_cast<IdType>(ids[1]), static_cast<IdType>(ids[2]) });
+  }
+  if (EnclosedVolume(surface) < 0)
+  {
+    for (auto & t : surface.triangles)
+    {
+      std::swap(t[1], t[2]);
+    }
+  }
+  return surface;
+}
+
+/** The phantom's own density in every cell, degree 2. */
+void
+FitPhantom(const PhantomModel & phantom, MeshArrays & mesh)
+{
+  constexpr int          Degree = 2;
+  const DensityFitKernel kernel(Degree, 6);
+  mesh.maximumDegree = Degree;
+  mesh.quantity = DensityQuantity::HounsfieldUnit;
+  mesh.degree.assign(mesh.tetrahedra.size(), Degree);
+  mesh.coefficients.resize(mesh.tetrahedra.size() * BernsteinCount(Degree));
+  itk::MultiThreaderBase::New()->ParallelizeArray(
+    0,
+    mesh.tetrahedra.size(),
+    [&](itk::SizeValueType t) {
+      const Id4 &         c = mesh.tetrahedra[t];
+      std::vector<double> values;
+      for (const Barycentric & mu : kernel.SamplePoints())
+      {
+        values.push_back(phantom.Density(mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] +
+                                         mu[3] * mesh.points[c[3]]));
+      }
+      kernel.Fit(values.data(), &mesh.coefficients[t * BernsteinCount(Degree)]);
+    },
+    nullptr);
+}
+
+double
+MassOf(const MeshArrays & mesh)
+{
+  double     mass = 0;
+  const auto count = static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree));
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 & c = mesh.tetrahedra[t];
+    mass += BernsteinIntegral(mesh.maximumDegree,
+                              &mesh.coefficients[t * count],
+                              SignedVolume(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]));
+  }
+  return mass;
+}
+
+/** Integral of the phantom's density over its bone, by points half a millimetre apart. */
+double
+MassOf(const PhantomModel & phantom)
+{
+  constexpr double    Spacing = 0.5;
+  const auto          x = phantom.GetExtent(Vector3::UnitX()), y = phantom.GetExtent(Vector3::UnitY()),
+             z = phantom.GetExtent(Vector3::UnitZ());
+  const auto          slices = static_cast<std::size_t>((z.upper - z.lower) / Spacing) + 1;
+  std::vector<double> mass(slices, 0.0);
+  itk::MultiThreaderBase::New()->ParallelizeArray(
+    0,
+    slices,
+    [&](itk::SizeValueType k) {
+      for (double b = y.lower; b < y.upper; b += Spacing)
+      {
+        for (double a = x.lower; a < x.upper; a += Spacing)
+        {
+          const Vector3 point(a, b, z.lower + Spacing * static_cast<double>(k));
+          if (phantom.Region(point) != Region::Outside)
+          {
+            mass[k] += phantom.Density(point) * Spacing * Spacing * Spacing;
+          }
+        }
+      }
+    },
+    nullptr);
+  return std::accumulate(mass.begin(), mass.end(), 0.0);
+}
+
+/** Share of a factor's variance that the scores of the first modes explain. */
+double
+Explained(const Eigen::VectorXd & factor, const Eigen::MatrixXd & scores)
+{
+  const Eigen::VectorXd fit = scores * scores.colPivHouseholderQr().solve(factor);
+  return fit.squaredNorm() / factor.squaredNorm();
+}
+
+/** Three factors of shape and two of density, orthogonal over the subjects, of mean 0 and variance 1. */
+Eigen::MatrixXd
+Factors(Eigen::Index subjects)
+{
+  std::mt19937                           generator(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Eigen::MatrixXd                        design(subjects, 6);
+  design.col(0).setOnes();
+  for (Eigen::Index i = 0; i < subjects; ++i)
+  {
+    for (Eigen::Index j = 1; j < 6; ++j)
+    {
+      design(i, j) = uniform(generator);
+    }
+  }
+  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(design).householderQ() * Eigen::MatrixXd::Identity(subjects, 6);
+  return q.rightCols(5) * std::sqrt(static_cast<double>(subjects - 1));
+}
+
+void
+Population(const std::string & standard, Eigen::Index subjects)
+{
+  const MeshArrays      mesh = ReadMeshArrays(standard);
+  const StandardModel   model(mesh);
+  const Eigen::MatrixXd factors = Factors(subjects);
+  auto                  set = MeshTrainingSet<>::New();
+  std::vector<double>   masses;
+  for (Eigen::Index i = 0; i < subjects; ++i)
+  {
+    HemipelvisParameters p;
+    p.scale *= 1 + 0.035 * factors(i, 0);
+    p.wingRadius += 12 * factors(i, 1);
+    p.inclination += 4 * factors(i, 2);
+    p.corticalDensity += 50 * factors(i, 3);
+    p.spongyDensity += 25 * factors(i, 4);
+    const HemipelvisPhantom phantom(p);
+    RegistrationReport      report;
+    MeshArrays              subject = mesh;
+    subject.points = model.Register(SurfaceOf(phantom), RegistrationParameters(), report);
+    FitPhantom(phantom, subject);
+    masses.push_back(MassOf(subject));
+    std::cout << json{ { "phantom", i }, { "surface", report.surfaceDistance }, { "tangled", report.untangling.before }, { "mass", masses.back() } }
+              << std::endl;
+    auto brought = DensityMesh<double>::New();
+    brought->SetArrays(subject);
+    set->AddSubject("phantom " + std::to_string(i), brought);
+  }
+  auto estimator = StatisticalModelEstimator<>::New();
+  estimator->SetInput(set);
+  estimator->Update();
+  const auto & content = estimator->GetOutput()->GetContent();
+  const char * names[5] = { "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density" };
+  for (Eigen::Index f = 0; f < 5; ++f)
+  {
+    const Eigen::MatrixXd scores = f < 3 ? content.shapeScores.leftCols(3) : content.densityScores.leftCols(2);
+    std::cout << json{ { "factor", names[f] }, { "explained", Explained(factors.col(f), scores) } } << std::endl;
+  }
+  const double across = (content.shapeScores.leftCols(3).transpose() * content.densityScores.leftCols(2) /
+                         static_cast<double>(subjects - 1)).cwiseAbs().maxCoeff();
+  const double mean = MassOf(content.mean), known = MassOf(HemipelvisPhantom());
+  std::cout << json{ { "correlation", across }, { "mass", mean }, { "massOfSubjects", Mean(masses) }, { "massOfPhantom", known } }
+            << std::endl;
+}
+
+/** Subjects made when they are asked for: a mesh with ten modes of shape and of density, and noise. */
+class SyntheticSet : public TrainingSet
+{
+public:
+  using Self = SyntheticSet;
+  using Pointer = itk::SmartPointer<Self>;
+  itkNewMacro(Self);
+  std::size_t
+  GetNumberOfSubjects() const override
+  {
+    return count;
+  }
+  std::string
+  GetSubjectName(std::size_t i) const override
+  {
+    return std::to_string(i);
+  }
+  MeshArrays
+  GetSubject(std::size_t i) const override
+  {
+    std::mt19937                     generator(static_cast<unsigned>(i + 1));
+    std::normal_distribution<double> normal;
+    MeshArrays                       mesh = base;
+    Eigen::VectorXd                  f(20);
+    for (double & x : f)
+    {
+      x = normal(generator);
+    }
+    std::uint32_t noise = static_cast<std::uint32_t>(i) * 2654435761U + 1;
+    for (Vector3 & x : mesh.points)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        noise = noise * 1664525U + 1013904223U;
+        x[a] += 0.1 * (noise / 4294967296.0 - 0.5);
+      }
+      const double t = 0.01 * x[0];
+      x[1] += f[0] * std::sin(t) + f[1] * std::cos(t) + f[2] * std::sin(2 * t);
+      x[2] += f[3] * std::sin(t) + f[4] * std::cos(3 * t);
+    }
+    for (std::size_t k = 0; k < mesh.coefficients.size(); ++k)
+    {
+      noise = noise * 1664525U + 1013904223U;
+      const double t = static_cast<double>(k) / static_cast<double>(mesh.coefficients.size());
+      mesh.coefficients[k] += 50 * f[5] + 40 * f[6] * std::sin(6 * t) + 30 * f[7] * std::cos(9 * t) + 20 * (noise / 4294967296.0 - 0.5);
+    }
+    return mesh;
+  }
+  MeshArrays  base;
+  std::size_t count{ 0 };
+};
+
+double
+PeakGigabytes()
+{
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+  {
+    if (word == "VmHWM:")
+    {
+      double kilobytes = 0;
+      status >> kilobytes;
+      return kilobytes / (1024 * 1024);
+    }
+  }
+  return 0;
+}
+
+void
+Memory(const std::string & file, std::size_t subjects)
+{
+  auto set = SyntheticSet::New();
+  set->base = ReadMeshArrays(file);
+  set->count = subjects;
+  auto estimator = StatisticalModelEstimator<>::New();
+  estimator->SetInput(set);
+  const double start = Cpu();
+  estimator->Update();
+  const auto & content = estimator->GetOutput()->GetContent();
+  std::cout << json{ { "subjects", subjects },
+                     { "tetrahedra", content.mean.tetrahedra.size() },
+                     { "coefficients", content.density.GetDimension() },
+                     { "shapeModes", content.shape.GetNumberOfModes() },
+                     { "densityModes", content.density.GetNumberOfModes() },
+                     { "seconds", Cpu() - start },
+                     { "gigabytes", PeakGigabytes() } }
+            << std::endl;
+}
 } // namespace
 
 int
 main(int argc, char ** argv)
 {
-  const MeshArrays      standard = ReadMeshArrays(argv[1]);
-  const TriangleSurface reference = ReadTriangleSurface(argv[2]);
-  const StandardModel     model(standard);
-  const TriangleSurface & source = model.GetSurface();
-  const DirectedSurface known(reference);
-  std::vector<Place>    places;
-  std::vector<double>   offset;
-  for (const Vector3 & x : source.points)
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  try
   {
-    const auto match = known.FindAny(x);
-    places.push_back({ match.triangle, known.Weights(match.triangle, match.point) });
-    offset.push_back(std::sqrt(match.squaredDistance));
-  }
-  std::cout << source.points.size() << " exterior points, " << Mean(offset) << " mm from the reference\n";
-  RegistrationParameters parameters;
-  parameters.interior = getenv("FRAMES") ? InteriorRule::EigenFrame : InteriorRule::Harmonic;
-  parameters.method = getenv("NICP") ? DeformationMethod::NonRigidICP : DeformationMethod::AdaptiveFocus;
-  AdaptiveFocusParameters & focus = parameters.focus;
-  if (const char * f = getenv("RINGS"))
-  {
-    focus.rings.clear();
-    std::istringstream in(f);
-    int                r;
-    while (in >> r)
-      focus.rings.push_back(r);
-  }
-  if (getenv("RIDGE")) focus.ridge = atof(getenv("RIDGE"));
-  if (getenv("SLIDE")) focus.slide = atof(getenv("SLIDE"));
-  if (getenv("ITER")) focus.iterations = atoi(getenv("ITER"));
-  if (getenv("WIDTH")) focus.attributeWidth = atof(getenv("WIDTH"));
-  if (getenv("FOCUS")) focus.focus = atof(getenv("FOCUS"));
-  std::vector<std::vector<Vector3>> found, truth;
-  std::vector<double>               all;
-  for (int s = 3; s < argc; ++s)
-  {
-    const TriangleSurface original = ReadTriangleSurface(argv[s]);
-    TriangleSurface       subject = original;
-    const AffineMap       pose = Disguise(subject, static_cast<unsigned>(s));
-    const double          start = Cpu();
-    RegistrationReport    report;
-    std::vector<Vector3>  points;
-    try
+    RegistrationParameters parameters;
+    if (argc > 4 && arguments[0] == "registration")
     {
-      points = model.Register(subject, parameters, report);
+      Registration({ arguments.begin() + 1, arguments.end() }, parameters, argc > 7);
     }
-    catch (const std::runtime_error & e)
+    else if (argc > 4 && arguments[0] == "frames")
     {
-      std::cout << argv[s] << ": " << e.what() << std::endl;
-      continue;
+      parameters.interior = InteriorRule::EigenFrame;
+      Registration({ arguments.begin() + 1, arguments.end() }, parameters, false);
     }
-    const double          end = Cpu();
-    TriangleSurface       moved = source;
-    for (std::size_t p = 0; p < moved.points.size(); ++p)
+    else if (argc > 4 && arguments[0] == "icp")
     {
-      moved.points[p] = points[model.GetSurfacePointIds()[p]];
+      parameters.method = DeformationMethod::NonRigidICP;
+      Registration({ arguments.begin() + 1, arguments.end() }, parameters, false);
     }
-    std::vector<double> affineError;
-    std::vector<Vector3> expected;
-    for (std::size_t p = 0; p < places.size(); ++p)
+    else if (argc == 4 && arguments[0] == "population")
     {
-      const auto & t = reference.triangles[places[p].triangle];
-      const Vector3 & w = places[p].weights;
-      expected.push_back(pose(w[0] * original.points[t[0]] + w[1] * original.points[t[1]] + w[2] * original.points[t[2]]));
-      affineError.push_back((report.alignment(source.points[p]) - expected[p]).norm());
+      Population(arguments[1], std::stol(arguments[2]));
     }
-    std::vector<double> error;
-    for (std::size_t p = 0; p < places.size(); ++p)
+    else if (argc == 4 && arguments[0] == "memory")
     {
-      error.push_back((moved.points[p] - expected[p]).norm());
+      Memory(arguments[1], std::stoul(arguments[2]));
     }
-    all.insert(all.end(), error.begin(), error.end());
-    std::cout << argv[s] + std::string(argv[s]).rfind('/') + 1 << " affine rms " << report.alignmentDistance << " corr "
-              << Mean(affineError) << " | surface " << report.surfaceDistance << " back " << report.subjectDistance << " corr mean "
-              << Mean(error) << " median " << Percentile(error, 0.5) << " 95% " << Percentile(error, 0.95) << " max "
-              << Percentile(error, 1) << " inverted " << report.untangling.before << " " << report.untangling.after << " moved "
-              << report.untangling.moved << " by " << report.untangling.exterior << " s " << end - start << std::endl;
-    found.push_back(moved.points);
-    truth.push_back(expected);
-  }
-  std::cout << "all: median " << Percentile(all, 0.5) << " mean " << Mean(all) << '\n';
-  if (found.size() > 4)
-  {
-    EvaluationParameters e;
-    e.samples = 0;
-    const auto a = EvaluateShapes(found, e), b = EvaluateShapes(truth, e);
-    for (std::size_t m = 0; m < a.size(); ++m)
+    else
     {
-      std::cout << a[m].modes << " modes: " << a[m].generalisation.mean << " against " << b[m].generalisation.mean << '\n';
+      std::cerr << "usage: see the head of the source\n";
+      return EXIT_FAILURE;
     }
   }
+  catch (const std::exception & error)
+  {
+    std::cerr << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
 }

@@ -3,9 +3,9 @@
  *=========================================================================*/
 #include "boneSurfaceAlignment.h"
 
+#include "boneAcrossFit.h"
 #include "boneParallelLoop.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -94,36 +94,24 @@ PrincipalAxes(const TriangleSurface & surface)
 AffineMap
 FitAcross(const std::vector<Vector3> & from, const std::vector<Vector3> & to, const std::vector<Vector3> & normals)
 {
-  constexpr double              Along = 0.1;
-  Eigen::Matrix<double, 12, 12> matrix = Eigen::Matrix<double, 12, 12>::Zero();
-  Eigen::Matrix<double, 12, 1>  right = Eigen::Matrix<double, 12, 1>::Zero();
-  Vector3                       centre = Vector3::Zero();
+  constexpr double Along = 0.1;
+  Vector3          centre = Vector3::Zero();
   for (const Vector3 & x : from)
   {
     centre += x / static_cast<double>(from.size());
   }
+  AcrossFit fit;
   for (std::size_t i = 0; i < from.size(); ++i)
   {
-    const Eigen::Matrix3d metric = normals[i] * normals[i].transpose() + Along * Eigen::Matrix3d::Identity();
-    const Vector3         force = metric * to[i];
-    Eigen::Vector4d       x;
-    x << from[i] - centre, 1.0;
-    for (int a = 0; a < 4; ++a)
-    {
-      right.segment<3>(3 * a) += x[a] * force;
-      for (int b = 0; b < 4; ++b)
-      {
-        matrix.block<3, 3>(3 * a, 3 * b) += x[a] * x[b] * metric;
-      }
-    }
+    fit.Add(from[i] - centre, AcrossFit::MakeTerm(normals[i], to[i] - centre, Along, 1.0), 1.0);
   }
-  const Eigen::Matrix<double, 12, 1> solution = matrix.ldlt().solve(right);
-  AffineMap                          map;
-  for (int a = 0; a < 3; ++a)
+  AffineMap map;
+  Vector3   place;
+  if (!fit.Solve(0.0, map.linear, place))
   {
-    map.linear.col(a) = solution.segment<3>(3 * a);
+    return FitAlignment(from, to, AlignmentKind::Affine);
   }
-  map.translation = Vector3(solution.tail<3>()) - map.linear * centre;
+  map.translation = centre + place - map.linear * centre;
   return map;
 }
 

@@ -3,10 +3,9 @@
  *=========================================================================*/
 #include "boneSurfaceDeformation.h"
 
+#include "boneAcrossFit.h"
 #include "boneParallelLoop.h"
 
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +61,23 @@ SortRings(const TriangleSurface & surface, RingNeighbors & rings)
   });
 }
 
+/** A third of the area of the triangles around each point. */
+std::vector<double>
+PointAreas(const TriangleSurface & surface)
+{
+  std::vector<double> areas(surface.points.size(), 0.0);
+  for (const auto & t : surface.triangles)
+  {
+    const Vector3 & a = surface.points[t[0]];
+    const double    area = (surface.points[t[1]] - a).cross(surface.points[t[2]] - a).norm() / 6;
+    for (const IdType p : t)
+    {
+      areas[p] += area;
+    }
+  }
+  return areas;
+}
+
 /** Where the target pulls each vertex to, and how much that counts. */
 struct Pull
 {
@@ -79,26 +95,9 @@ public:
     , m_Rings(FindRings(source, std::max(parameters.attributeLayers, *std::max_element(parameters.rings.begin(), parameters.rings.end()))))
     , m_Rest(source.points)
     , m_RestAttributes(AttributeVectors(source.points, m_Rings, parameters.attributeLayers))
+    , m_TargetArea(PointAreas(target.GetSurface()))
+    , m_SourceArea(PointAreas(source))
   {
-    const TriangleSurface & surface = target.GetSurface();
-    m_TargetArea.assign(surface.points.size(), 0.0);
-    for (const auto & t : surface.triangles)
-    {
-      const double area = (surface.points[t[1]] - surface.points[t[0]]).cross(surface.points[t[2]] - surface.points[t[0]]).norm() / 6;
-      for (const IdType p : t)
-      {
-        m_TargetArea[p] += area;
-      }
-    }
-    m_SourceArea.assign(source.points.size(), 0.0);
-    for (const auto & t : source.triangles)
-    {
-      const double area = (source.points[t[1]] - source.points[t[0]]).cross(source.points[t[2]] - source.points[t[0]]).norm() / 6;
-      for (const IdType p : t)
-      {
-        m_SourceArea[p] += area;
-      }
-    }
     m_Focus.assign(source.points.size(), 1.0);
   }
 
@@ -220,100 +219,40 @@ private:
     }
   }
 
-  /** What a vertex adds to the fit of a segment: w (n n^T + slide I), and that times its displacement from rest. */
-  struct Term
-  {
-    std::array<double, 6> metric; // xx, yy, zz, xy, xz, yz
-    Vector3               force;
-  };
-
   /** Moves every vertex by the affine map of its segment, fitted from rest to the pull. */
   void
   Step(int rings)
   {
-    const Pull                 pull = this->FindPull();
-    const std::vector<Vector3> normals = PointNormals(m_Source);
-    std::vector<Term>          terms(m_Rest.size());
+    const Pull                   pull = this->FindPull();
+    const std::vector<Vector3>   normals = PointNormals(m_Source);
+    std::vector<AcrossFit::Term> terms(m_Rest.size());
     for (std::size_t v = 0; v < m_Rest.size(); ++v)
     {
-      const Vector3 & n = normals[v];
-      const double    w = pull.weight[v] * m_Focus[v], s = m_P.slide;
-      terms[v].metric = { w * (n[0] * n[0] + s), w * (n[1] * n[1] + s), w * (n[2] * n[2] + s),
-                          w * n[0] * n[1],       w * n[0] * n[2],       w * n[1] * n[2] };
-      const Vector3 move = pull.place[v] - m_Rest[v];
-      terms[v].force = w * (n.dot(move) * n + s * move);
+      terms[v] =
+        AcrossFit::MakeTerm(normals[v], pull.place[v] - m_Rest[v], m_P.slide, pull.weight[v] * m_Focus[v]);
     }
     std::vector<Vector3> moved(m_Rest.size());
     ParallelLoop(m_Rest.size(), Chunk, [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); });
     m_Source.points = std::move(moved);
   }
 
-  /** The displacement B d + c of the segment, d from the vertex at rest, is fitted in the metric of the terms; c moves
-   * the vertex. */
   Vector3
-  MapVertex(std::size_t v, int rings, const std::vector<Term> & terms) const
+  MapVertex(std::size_t v, int rings, const std::vector<AcrossFit::Term> & terms) const
   {
     const auto & ids = m_Rings.ring[v];
     const auto & start = m_Rings.start[v];
-    double       h[10][6] = {};
-    double       g[4][3] = {};
-    double       spread = 0, weight = 0;
+    AcrossFit    fit;
     for (int r = 0; r <= rings; ++r)
     {
       const double x = r / (rings + 1.0);
-      const double falloff = (1 - x * x) * (1 - x * x);
       for (auto i = start[r]; i < start[r + 1]; ++i)
       {
-        const Term &  term = terms[ids[i]];
-        const Vector3 d = m_Rest[ids[i]] - m_Rest[v];
-        const double  c[4] = { d[0], d[1], d[2], 1.0 };
-        double        metric[6];
-        for (int k = 0; k < 6; ++k)
-        {
-          metric[k] = falloff * term.metric[k];
-        }
-        const double trace = metric[0] + metric[1] + metric[2];
-        weight += trace;
-        spread += trace * d.squaredNorm();
-        for (int a = 0, block = 0; a < 4; ++a)
-        {
-          for (int k = 0; k < 3; ++k)
-          {
-            g[a][k] += falloff * c[a] * term.force[k];
-          }
-          for (int b = a; b < 4; ++b, ++block)
-          {
-            const double both = c[a] * c[b];
-            for (int k = 0; k < 6; ++k)
-            {
-              h[block][k] += both * metric[k];
-            }
-          }
-        }
+        fit.Add(m_Rest[ids[i]] - m_Rest[v], terms[ids[i]], (1 - x * x) * (1 - x * x));
       }
     }
-    if (!(weight > 0 && spread > 0))
-    {
-      return m_Source.points[v];
-    }
-    Eigen::Matrix<double, 12, 12> matrix;
-    Eigen::Matrix<double, 12, 1>  right;
-    for (int a = 0, block = 0; a < 4; ++a)
-    {
-      right.segment<3>(3 * a) = Eigen::Map<const Vector3>(g[a]);
-      for (int b = a; b < 4; ++b, ++block)
-      {
-        const double *  m = h[block];
-        Eigen::Matrix3d part;
-        part << m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2];
-        matrix.block<3, 3>(3 * a, 3 * b) = part;
-        matrix.block<3, 3>(3 * b, 3 * a) = part;
-      }
-    }
-    matrix.diagonal().head<9>().array() += m_P.ridge * spread;
-    matrix.diagonal().tail<3>().array() += 1e-9 * weight;
-    const Eigen::Matrix<double, 12, 1> solution = matrix.ldlt().solve(right);
-    return m_Rest[v] + solution.tail<3>();
+    Eigen::Matrix3d linear;
+    Vector3         move;
+    return fit.Solve(m_P.ridge, linear, move) ? Vector3(m_Rest[v] + move) : m_Source.points[v];
   }
 
   TriangleSurface                 m_Source; // where it is now
