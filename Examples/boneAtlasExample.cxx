@@ -5,6 +5,7 @@
 // An atlas of shape and density, with pictures of its first modes at +-3 standard deviations (the paper's Figure 14):
 //   boneAtlasExample FOLDER                    of eight phantom hemipelves
 //   boneAtlasExample FOLDER SURFACE SURFACE... of closed surfaces of one bone, x along it, with simulated densities
+//   boneAtlasExample FOLDER ATLAS.h5           pictures of an atlas there is
 // FOLDER gets atlas.h5, shape_modes.png and radiograph_modes.png.
 
 #include "boneBuildPipeline.h"
@@ -68,6 +69,15 @@ Model(Source * source, unsigned int axis)
 }
 
 void
+DrawModes(const bone::StatisticalModel & model, const std::string & folder, const bone::Vector3 & look, const bone::Vector3 & up)
+{
+  const auto shapes = bone::DrawShapeModes(model, 2, look, up);
+  bone::WriteImage(shapes.GetPointer(), folder + "/shape_modes.png");
+  const auto radiographs = bone::DrawRadiographModes(model, look, up);
+  bone::WriteImage(radiographs.GetPointer(), folder + "/radiograph_modes.png");
+}
+
+void
 Train(bone::PopulationRegistration & population, const std::vector<std::function<Subject()>> & subjects, const std::string & folder,
       const bone::Vector3 & look, const bone::Vector3 & up)
 {
@@ -86,8 +96,7 @@ Train(bone::PopulationRegistration & population, const std::vector<std::function
   estimator->Update();
   const auto * model = estimator->GetOutput();
   bone::WriteStatisticalModel(model, folder + "/atlas.h5");
-  bone::WriteImage(bone::DrawShapeModes(*model, 2, look, up), folder + "/shape_modes.png");
-  bone::WriteImage(bone::DrawRadiographModes(*model, look, up), folder + "/radiograph_modes.png");
+  DrawModes(*model, folder, look, up);
   std::cout << model->GetContent().shape.GetNumberOfModes() << " modes of shape, "
             << model->GetContent().density.GetNumberOfModes() << " of density\n";
 }
@@ -135,9 +144,9 @@ TrainSurfaces(const std::string & folder, const std::vector<std::string> & files
 int
 main(int argc, char ** argv)
 {
-  if (argc < 2 || argc == 3)
+  if (argc < 2)
   {
-    std::cerr << "usage: boneAtlasExample FOLDER [SURFACE SURFACE ...]\n";
+    std::cerr << "usage: boneAtlasExample FOLDER [ATLAS.h5 | SURFACE SURFACE ...]\n";
     return EXIT_FAILURE;
   }
   try
@@ -146,6 +155,11 @@ main(int argc, char ** argv)
     if (argc == 2)
     {
       TrainHemipelves(argv[1]);
+    }
+    else if (argc == 3)
+    {
+      const auto model = bone::ReadStatisticalModel(argv[2]);
+      DrawModes(*model, argv[1], -bone::Vector3::UnitX(), bone::Vector3::UnitZ());
     }
     else
     {
