@@ -66,6 +66,14 @@ def read(scratch, name):
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
+def figure(row, name):
+    """A mean and its standard error, where the run has them."""
+    if name not in row:
+        return "not run"
+    error = row.get(name + "Error")
+    return f"{row[name]:.2f}" + (f" ({error:.2f})" if error is not None else "")
+
+
 def registration_section(scratch):
     rows = read(scratch, "registration")
     subjects = [r for r in rows if "subject" in r]
@@ -97,9 +105,9 @@ def registration_section(scratch):
         known = {r["modes"]: r for r in models if r["model"] == "known"}
         for r in (r for r in models if r["model"] == "registered"):
             k = known[r["modes"]]
-            out.append(f"| {r['modes']} | {r['generalisation']:.2f} ({r['generalisationError']:.2f}) | {k['generalisation']:.2f} "
-                       f"({k['generalisationError']:.2f}) | {r['generalisation'] / k['generalisation']:.2f} | "
-                       f"{r['compactness']:.3f} | {r['specificity']:.2f} ({r['specificityError']:.2f}) |")
+            out.append(f"| {r['modes']} | {figure(r, 'generalisation')} | {figure(k, 'generalisation')} | "
+                       f"{r['generalisation'] / k['generalisation']:.2f} | {figure(r, 'compactness')} | "
+                       f"{figure(r, 'specificity')} |")
     return out
 
 
