@@ -29,9 +29,9 @@ struct Options
   bool        continuous{ false };
   std::string interpolator{ "linear" };
   std::string weights;
-  double      voxelWeight{ 2.0 };
+  double      voxelWeight{ 4.0 };
   double      tikhonov{ 1e-4 };
-  double      overshoot{ 4.0 };
+  double      overshoot{ 8.0 };
   double      surfaceMargin{ 0.0 };
   double      maximumError{ 0.0 };
   std::string quantity{ "hu" };
@@ -170,14 +170,14 @@ AddFitCommand(CLI::App & app, Action & action)
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
   command
     ->add_option(
-      "--voxel-weight", options->voxelWeight, "Weight of voxels' own values against the interpolated image; default 2")
+      "--voxel-weight", options->voxelWeight, "Weight of voxels' own values against the interpolated image; default 4")
     ->check(NotNegative());
   command->add_option("--tikhonov", options->tikhonov, "Weight of the pull to the degree below; default 1e-4")
     ->check(NotNegative());
   command
     ->add_option("--overshoot-limit",
                  options->overshoot,
-                 "How far control values may lie beyond a tetrahedron's data, in ranges of these; default 4")
+                 "How far control values may lie beyond a tetrahedron's data, in ranges of these; default 8")
     ->check(NotNegative());
   command
     ->add_option("--surface-margin",

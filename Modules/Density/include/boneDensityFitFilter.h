@@ -51,14 +51,14 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  * - Continuous: one least-squares spline for each region (\ref MakeDensityContinuous) in place of tetrahedra on their
  *   own; needs degree 1 or more. Jumps remain between regions. Default off.
  * - Interpolator: Linear (default) or CubicBSpline.
- * - VoxelWeight: of the voxels' own values against the interpolated image, no unit, default 2; 0: the interpolated
+ * - VoxelWeight: of the voxels' own values against the interpolated image, no unit, default 4; 0: the interpolated
  * image alone.
  * - Tikhonov: weight of the term that holds control values near those of the lower degree (\ref DensityFitKernel),
  *   default 1e-4, no unit; 0: plain least squares, which reproduces polynomials of the degree exactly. Linear fields
  *   are exact in any case.
  * - OvershootLimit: how far control values may lie beyond the tetrahedron's data, in ranges of those data (no unit,
  *   infinite: anywhere); where they lie further, the parts of highest degree are reduced (\ref LimitControlValues).
- *   Default 4.
+ *   Default 8.
  * - SurfaceMargin (mm): what lies nearer to the mesh's surface counts as what lies this deep straight inward of it, so
  *   that voxels partly outside the bone leave no dark rim. Default 0: the image as it is.
  * - MaximumError (density units): above 0, each tetrahedron takes the lowest degree, up to Degree, whose root mean
@@ -193,8 +193,8 @@ private:
   bool                m_Continuous{ false };
   double              m_Tikhonov{ 1e-4 };
   DensityInterpolator m_Interpolator{ DensityInterpolator::Linear };
-  double              m_VoxelWeight{ 2.0 };
-  double              m_OvershootLimit{ 4.0 };
+  double              m_VoxelWeight{ 4.0 };
+  double              m_OvershootLimit{ 8.0 };
   double              m_SurfaceMargin{ 0.0 };
   double              m_MaximumError{ 0.0 };
   bool                m_HoldOut{ false };

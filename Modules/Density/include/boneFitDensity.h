@@ -20,7 +20,7 @@ struct DensityFitSettings
 {
   int    degree{ 3 };
   double tikhonov{ 1e-4 };
-  double voxelWeight{ 2.0 };
+  double voxelWeight{ 4.0 };
   double overshootLimit{ std::numeric_limits<double>::infinity() };
   double surfaceMargin{ 0.0 };
   double maximumError{ 0.0 };
