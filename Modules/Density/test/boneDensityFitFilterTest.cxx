@@ -99,7 +99,7 @@ TEST(DensityFitFilter, ALinearFieldIsExactOnAMeshOfFloatsAndAnImageOfShorts)
   const auto rounded = test::ObliqueImage<ShortImage>([](const Vector3 & x) { return std::round(test::Linear(x)); });
   auto       shortFilter = MakeFit(mesh, rounded.GetPointer(), 1);
   shortFilter->Update();
-  ExpectLinear(*shortFilter, mesh, 1, 1.0);
+  ExpectLinear(*shortFilter, mesh, 1, 1.5); // values rounded by up to 0.5, control values further out than the voxels
 }
 
 TEST(DensityFitFilter, ErrorFallsWithTheDegreeDownToThatOfLinearInterpolation)
