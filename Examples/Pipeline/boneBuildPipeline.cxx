@@ -82,9 +82,10 @@ BuildPipeline::SetContourSpacing(double spacing)
 std::vector<BuildPipeline::Stage>
 BuildPipeline::GetStages() const
 {
-  std::vector<Stage> stages = { { "contours", m_Snake },   { "slices", m_Slices }, { "resample", m_Resample }, { "medial axis", m_MedialAxis },
-                                { "tiling", m_Tiling },    { "quality", m_Quality },   { "fit", m_Fit },
-                                { "collapse", m_Collapse } };
+  std::vector<Stage> stages = { { "contours", m_Snake },    { "slices", m_Slices },
+                                { "resample", m_Resample }, { "medial axis", m_MedialAxis },
+                                { "tiling", m_Tiling },     { "quality", m_Quality },
+                                { "fit", m_Fit },           { "collapse", m_Collapse } };
   for (std::size_t level = 0; level < m_Radiographs.size(); ++level)
   {
     stages.emplace_back("radiograph L" + std::to_string(level + 1), m_Radiographs[level]);

@@ -128,9 +128,7 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
   pipeline.GetQuality()->SetDistanceBound(DistanceBound(*input.ct, options.axis));
   pipeline.GetFit()->SetDegree(options.degree);
   pipeline.GetFit()->SetContinuous(options.continuous);
-  const ResolutionSearch search{
-    options.tetrahedra, sliceSpacing, options.sliceStep > 0.0, !options.regularSlices
-  };
+  const ResolutionSearch search{ options.tetrahedra, sliceSpacing, options.sliceStep > 0.0, !options.regularSlices };
   if (options.contourSpacing > 0.0)
   {
     resolution.contourSpacing = options.contourSpacing;
@@ -249,11 +247,11 @@ AddBuildCommand(CLI::App & app, Action & action)
                  options->levels,
                  "Coarser levels: numbers of tetrahedra, or shares of the first level; default 0.2 0.0769")
     ->check(Positive());
-  command->add_option("--slice-step", options->sliceStep, "Mean distance of slices in mm; default: chosen for --tetrahedra")
+  command
+    ->add_option("--slice-step", options->sliceStep, "Mean distance of slices in mm; default: chosen for --tetrahedra")
     ->check(Positive());
-  command->add_flag("--regular-slices",
-                    options->regularSlices,
-                    "Slices evenly spaced, and not more of them where the sections change");
+  command->add_flag(
+    "--regular-slices", options->regularSlices, "Slices evenly spaced, and not more of them where the sections change");
   command
     ->add_option("--contour-spacing",
                  options->contourSpacing,

@@ -69,10 +69,17 @@ protected:
 TEST_F(BuildPipelineTest, UnchangedPipelineRunsNoStage)
 {
   m_Pipeline.Update();
-  EXPECT_THAT(
-    Executed(),
-    testing::ElementsAre(
-      "contours", "slices", "resample", "medial axis", "tiling", "quality", "fit", "collapse", "radiograph L1", "radiograph L2"));
+  EXPECT_THAT(Executed(),
+              testing::ElementsAre("contours",
+                                   "slices",
+                                   "resample",
+                                   "medial axis",
+                                   "tiling",
+                                   "quality",
+                                   "fit",
+                                   "collapse",
+                                   "radiograph L1",
+                                   "radiograph L2"));
   m_Clock.Reset();
   m_Pipeline.Update();
   EXPECT_THAT(Executed(), testing::IsEmpty());

@@ -8,6 +8,7 @@
 #include "boneMeshIO.h"
 #include "boneQualityMeasures.h"
 #include "boneRandomStack.h"
+#include "boneSurfaceAudit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,12 +51,18 @@ main(int argc, char * argv[])
         axes += contour.axis;
       }
     }
+    int pinched = 0;
+    for (int region = 1; region <= 3; ++region)
+    {
+      pinched += bone::PinchedPoints(mesh, region);
+    }
     std::cout << "seconds " << seconds << "\nslices " << slices << "\ninner_contours " << inner << "\naxes " << axes
-              << "\npoints " << mesh.points.size() << "\ntetrahedra " << mesh.tetrahedra.size() << "\nslabs "
-              << report.slabs << "\nbranchings " << report.branchings << "\nlayer_branchings " << report.layerBranchings
-              << "\nfilled " << report.filledSlabs + report.filledEnds << "\nleft_out "
-              << report.loopsLeftOut + report.holesLeftOut << "\npatches " << report.patches << "\nleast_angle "
-              << least << "\nmean_angle " << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
+              << "\npinched " << pinched << "\npoints " << mesh.points.size() << "\ntetrahedra "
+              << mesh.tetrahedra.size() << "\nslabs " << report.slabs << "\nbranchings " << report.branchings
+              << "\nlayer_branchings " << report.layerBranchings << "\nfilled "
+              << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
+              << "\npatches " << report.patches << "\nleast_angle " << least << "\nmean_angle "
+              << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
     bone::WriteMeshArrays(mesh, argv[argc - 1]);
   }
   catch (const std::exception & error)

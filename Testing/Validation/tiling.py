@@ -73,7 +73,8 @@ class Validation:
                           "--contour-spacing", spacing, "--quiet", "--threads", 1, "-o", contours])
                 values = dict(line.split() for line in self.run([self.program, contours, mesh]).stdout.splitlines())
                 row = {key: float(value) for key, value in values.items()}
-                row.update(self.checked(mesh, labels, label, folder))
+                compared = label is not None and spacing == SPACINGS[0]
+                row.update(self.checked(mesh, labels if compared else None, label, folder))
             except subprocess.CalledProcessError as error:
                 row = {"valid": False, "error": (error.stderr or error.stdout).strip().splitlines()[-1][:300]}
         return case, row
@@ -82,7 +83,7 @@ class Validation:
         if not self.check:
             self.run([self.bonetk, "validate", mesh])
             return {"valid": True}
-        of_label = ["--label", labels, "--label-value", label] if label is not None else []
+        of_label = ["--label", labels, "--label-value", label] if labels else []
         done = subprocess.run([str(c) for c in ["/usr/bin/python3", self.check, mesh, *of_label, "--json",
                                                  f"{folder}/check.json"]], capture_output=True, text=True)
         report = json.loads(pathlib.Path(folder, "check.json").read_text())
@@ -90,7 +91,8 @@ class Validation:
         inward = found.get("regions_inward", {})
         bad = sum(r["bad_edges"] + r["pinched_vertices"] for r in inward.values())
         return {"valid": done.returncode == 0 and bad == 0, "components": found["components"],
-                "dice": found.get("label_dice"), "error": "" if done.returncode == 0 else done.stdout.strip().splitlines()[-1][:300],
+                "dice": found.get("label_dice"), "away": found.get("mesh_to_label_mm", {}).get("mean"),
+                "back": found.get("label_to_mesh_mm", {}).get("mean"), "error": "" if done.returncode == 0 else done.stdout.strip().splitlines()[-1][:300],
                 "inner": "/".join(str(r["components"]) for r in inward.values())}
 
 
@@ -98,7 +100,7 @@ def table_row(case, row):
     name, _, _, _, _, spacing = case
     if "tetrahedra" not in row:
         return f"| {name} | {spacing} | failed: {row['error']} |"
-    dice = f"{row['dice']:.3f}" if row.get("dice") else ""
+    dice = f"{row['dice']:.3f}, {row['away']:.2f}, {row['back']:.2f}" if row.get("dice") else ""
     return (f"| {name} | {spacing} | {'yes' if row['valid'] else 'NO ' + row.get('error', '')} | {row.get('components', '')} | "
             f"{row.get('inner', '')} | {row['tetrahedra']:.0f} | {row['slabs']:.0f} | {row['filled']:.0f} | "
             f"{row['left_out']:.0f} | {dice} | {row['mean_angle']:.0f} | {row['seconds']:.1f} |")
@@ -116,8 +118,9 @@ def main():
     chosen = [c for c in cases(os.environ.get("BONETK_DATA")) if options.only in c[0]][::options.sample]
     out = ["# Tiling\n", "Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled without CT; no smoothing.",
            "Inner components: of the union of all regions from the second, third, … inward. Filled: slabs and ends filled by",
-           "overlaying the triangulations of their slices. Seconds are of one core.\n",
-           "| bone, slice step | spacing, mm | valid | components | inner | tetrahedra | groups | filled | left out | Dice | "
+           "overlaying the triangulations of their slices. Against the label: Dice overlap, mean distance (mm) from the mesh's",
+           "surface to the label's and back, at one spacing of each real bone. Seconds are of one core.\n",
+           "| bone, slice step | spacing, mm | valid | components | inner | tetrahedra | groups | filled | left out | against the label | "
            "mean least angle | s |", "|" + "---|" * 12]
     invalid = 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:

@@ -159,8 +159,8 @@ bool
 OpensToNeighbour(const std::vector<BoneSection> & sections, std::size_t k, const Polygon & hole)
 {
   const auto opens = [&hole](const BoneSection & section) {
-    const auto outside = std::count_if(
-      hole.begin(), hole.end(), [&section](const Vector2 & q) { return !InBone(section, q); });
+    const auto outside =
+      std::count_if(hole.begin(), hole.end(), [&section](const Vector2 & q) { return !InBone(section, q); });
     return 2 * static_cast<std::size_t>(outside) > hole.size();
   };
   return (k > 0 && opens(sections[k - 1])) || (k + 1 < sections.size() && opens(sections[k + 1]));

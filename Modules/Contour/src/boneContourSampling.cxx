@@ -381,8 +381,8 @@ private:
     }
     const std::vector<double> share = ShareAlong(plan);
     const int                 count = std::max(8, static_cast<int>(std::ceil(share.back() - 1e-9)));
-    std::vector<double> at;
-    std::size_t         i = 0;
+    std::vector<double>       at;
+    std::size_t               i = 0;
     for (int k = 0; k < count; ++k)
     {
       const double wanted = share.back() * k / count;

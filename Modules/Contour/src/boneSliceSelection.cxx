@@ -152,10 +152,10 @@ SelectSlices(const ContourStack & stack, std::size_t count, double maximumGap, c
   {
     --last;
   }
-  const SectionFields            fields(stack, first, last, parallel);
-  const std::size_t              size = fields.Size();
-  const std::vector<std::size_t> farthest = FarthestNext(fields, maximumGap);
-  const std::size_t              kept = std::clamp(count, std::min(LeastCount(farthest), size), size);
+  const SectionFields              fields(stack, first, last, parallel);
+  const std::size_t                size = fields.Size();
+  const std::vector<std::size_t>   farthest = FarthestNext(fields, maximumGap);
+  const std::size_t                kept = std::clamp(count, std::min(LeastCount(farthest), size), size);
   std::vector<std::vector<double>> cost(size);
   parallel(size, [&](std::size_t i) {
     for (std::size_t j = i + 1; j <= farthest[i] && j < size; ++j)

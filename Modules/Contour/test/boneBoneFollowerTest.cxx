@@ -150,7 +150,8 @@ TEST(BoneFollower, BonesInContactStayApart)
   {
     const double z = static_cast<double>(k) - 10.0;
     ASSERT_EQ(follow.Pieces(k), 1u) << k;
-    EXPECT_NEAR(std::sqrt(SignedArea(follow.sections[k].pieces[0].outer) / M_PI), std::sqrt(169.0 - z * z), 2.0 * Pixel) << k;
+    EXPECT_NEAR(std::sqrt(SignedArea(follow.sections[k].pieces[0].outer) / M_PI), std::sqrt(169.0 - z * z), 2.0 * Pixel)
+      << k;
   }
   EXPECT_THAT(follow.AllEvents(), HasSubstr("touches another bone"));
 }

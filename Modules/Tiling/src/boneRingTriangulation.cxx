@@ -18,6 +18,7 @@ namespace
 {
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr int    NumberOfStarts = 8;
+constexpr double Tie = 1e-9; ///< of the cost
 
 /** Cost of one triangle: its new span and a share of its circumradius, infinite where it is not counter-clockwise. */
 double
@@ -141,7 +142,8 @@ TriangulateRing(const std::vector<Vector2> & plane, const Walk & outer, const Wa
     {
       ++found;
     }
-    if (cost < best)
+    // Sums of the same triangles from another start differ by rounding.
+    if (cost < best - Tie * std::abs(cost))
     {
       best = cost;
       ring = Merge{ a0, b0, std::move(letters) };

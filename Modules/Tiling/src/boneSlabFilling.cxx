@@ -24,10 +24,10 @@ namespace
 {
 constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
-constexpr double ShiftGain = 1.5; ///< a shift leans upright walls too, so it must pay
-constexpr int    UsualShifts = 2; ///< looked at always; others where these do not do
+constexpr double ShiftGain = 1.5;         ///< a shift leans upright walls too, so it must pay
+constexpr int    UsualShifts = 2;         ///< looked at always; others where these do not do
 constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
-constexpr double Shift = 1e-5;    // mm, parts vertices of the two slices that lie over each other
+constexpr double Shift = 1e-5;            // mm, parts vertices of the two slices that lie over each other
 
 /** The triangulation of a slice and of what is outside the bone. */
 struct Side
@@ -297,6 +297,13 @@ private:
     m_Planes = static_cast<int>(m_Columns.front().size()) - 1;
   }
 
+  /** A point in the stack's frame, where all of a slice are at exactly one height. */
+  static Vector3
+  At(const Vector2 & q, double height)
+  {
+    return { q.x(), q.y(), height };
+  }
+
   void
   MakePoints(double low, double high)
   {
@@ -307,8 +314,7 @@ private:
       {
         const int id = m_Sides[s]->poolId[v];
         m_Mesh.points.push_back(
-          id >= 0 ? m_Pool.space[id]
-                  : m_Stack.FromPlane(m_Sides[s]->box.points[v] + m_Sides[s]->shift, s == 0 ? low : high));
+          At(id >= 0 ? m_Pool.plane[id] : Vector2(m_Sides[s]->box.points[v] + m_Sides[s]->shift), s == 0 ? low : high));
       }
     }
     m_FirstSteiner = static_cast<IdType>(m_Mesh.points.size());
@@ -317,7 +323,7 @@ private:
       const double share = (plane + 1.0) / (m_Planes + 1.0);
       for (const Vector2 & q : m_Overlay.points)
       {
-        m_Mesh.points.push_back(m_Stack.FromPlane(q + share * m_Sides[1]->shift, (1 - share) * low + share * high));
+        m_Mesh.points.push_back(At(q + share * m_Sides[1]->shift, (1 - share) * low + share * high));
       }
     }
   }
@@ -326,17 +332,18 @@ private:
   SteinerPlaces
   PlacesOf(double low, double high) const
   {
-    const SlabSurface surface = FindSlabSurface(
-      { { &m_Sides[0]->box, &m_Sides[1]->box } }, { { &m_Sides[0]->region, &m_Sides[1]->region } }, m_Overlay, m_Columns);
-    SteinerPlaces places;
+    const SlabSurface surface = FindSlabSurface({ { &m_Sides[0]->box, &m_Sides[1]->box } },
+                                                { { &m_Sides[0]->region, &m_Sides[1]->region } },
+                                                m_Overlay,
+                                                m_Columns);
+    SteinerPlaces     places;
     places.tolerance = SurfaceTolerance * (high - low);
     for (std::size_t i = 0; i < surface.height.size(); ++i)
     {
       const double share = surface.height[i];
       places.ideal.push_back(share < 0 ? m_Mesh.points[m_FirstSteiner + i]
-                                       : m_Stack.FromPlane(m_Overlay.points[i % m_Overlay.points.size()] +
-                                                             share * m_Sides[1]->shift,
-                                                           (1 - share) * low + share * high));
+                                       : At(m_Overlay.points[i % m_Overlay.points.size()] + share * m_Sides[1]->shift,
+                                            (1 - share) * low + share * high));
     }
     for (const auto & face : surface.faces)
     {
@@ -481,7 +488,8 @@ private:
           }
           else
           {
-            result.points.push_back(filled.points[v]);
+            const Vector3 & p = filled.points[v];
+            result.points.push_back(m_Stack.FromPlane({ p.x(), p.y() }, p.z()));
             result.layers.push_back(least[v]);
             id[v] = -static_cast<int>(result.points.size());
           }
@@ -490,7 +498,27 @@ private:
       }
       result.tetrahedra.push_back(cell);
     }
+    VerifyInSpace(result);
     return result;
+  }
+
+  /** Throws where a cell turned over when its points were brought from the stack's frame to space. */
+  void
+  VerifyInSpace(const SlabFilling & filling) const
+  {
+    for (const TiledTetra & cell : filling.tetrahedra)
+    {
+      std::array<Vector3, 4> p;
+      for (int i = 0; i < 4; ++i)
+      {
+        const IdType v = cell.vertices[i];
+        p[i] = v < 0 ? filling.points[static_cast<std::size_t>(-1 - v)] : m_Pool.space[v];
+      }
+      if (Orient3D(p[0], p[1], p[2], p[3]) <= 0)
+      {
+        throw std::runtime_error("its contours are too close to be told apart");
+      }
+    }
   }
 
   const ContourStack & m_Stack;

@@ -136,7 +136,7 @@ private:
           const Vector2 & q = m_Overlay.points[v];
           const auto      nearest = m_Contours[s].FindNearest(InPlane(q));
           const double    distance = std::sqrt(nearest.squaredDistance);
-          m_Distance[s][v] = nearest.triangle < 0 ? std::numeric_limits<double>::max()
+          m_Distance[s][v] = nearest.triangle < 0   ? std::numeric_limits<double>::max()
                              : distance > OnContour ? distance
                                                     : 0.0;
         }
@@ -191,12 +191,12 @@ FindSlabSurface(const std::array<const BoxTriangulation *, 2> & boxes,
                 const PlanarOverlay &                           overlay,
                 const std::vector<Column> &                     columns)
 {
-  const int           points = static_cast<int>(overlay.points.size());
-  const int           planes = static_cast<int>(columns.front().size()) - 1;
-  std::vector<double> sum(static_cast<std::size_t>(points) * planes, 0.0), count = sum;
-  SlabSurface         surface;
-  const int           layers = std::max(*std::max_element(regions[0]->begin(), regions[0]->end()),
-                                        *std::max_element(regions[1]->begin(), regions[1]->end()));
+  const int                        points = static_cast<int>(overlay.points.size());
+  const int                        planes = static_cast<int>(columns.front().size()) - 1;
+  std::vector<double>              sum(static_cast<std::size_t>(points) * planes, 0.0), count = sum;
+  SlabSurface                      surface;
+  const int                        layers = std::max(*std::max_element(regions[0]->begin(), regions[0]->end()),
+                              *std::max_element(regions[1]->begin(), regions[1]->end()));
   std::vector<std::vector<double>> heights;
   for (int layer = 1; layer <= layers; ++layer)
   {

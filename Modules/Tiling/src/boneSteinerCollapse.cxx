@@ -20,8 +20,21 @@ namespace
 constexpr double GoodShape = 0.4;
 constexpr double FirstFloor = 0.03; ///< worst shape of bone that the first round may make
 constexpr double ShapeWeight = 3.0;
+constexpr double ShapeUnit = 1e-8;
+constexpr double CostUnit = 1e-6;    // mm
+constexpr double ErrorUnit = 1e-4;   // mm; quadrics cancel
+constexpr double LeastArea = 1e-5;   // mm^2; faces of less have no direction
+constexpr double LeastShape = 1e-6;  ///< of bone, and
+constexpr double LeastVolume = 1e-8; ///< mm^3 of what is outside: beyond what coordinates are rounded by
 constexpr double SteinerTargetFactor = 1.5;
 constexpr double ErrorWeight = 10.0; ///< a surface's error against the way a point goes
+
+/** Values that differ by what coordinates are rounded by are to be the same, so that a turned stack is filled alike. */
+double
+Rounded(double value, double unit)
+{
+  return unit * std::floor(value / unit + 0.5);
+}
 
 /** Volume over the cube of the root mean square edge, 1 for a regular tetrahedron; negative where inverted. */
 double
@@ -31,7 +44,7 @@ Shape(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d
   const double  square = (x.squaredNorm() + y.squaredNorm() + z.squaredNorm() + (c - b).squaredNorm() +
                          (d - b).squaredNorm() + (d - c).squaredNorm()) /
                         6.0;
-  return 1.4142135623730951 * x.cross(y).dot(z) / (square * std::sqrt(square));
+  return Rounded(1.4142135623730951 * x.cross(y).dot(z) / (square * std::sqrt(square)), ShapeUnit);
 }
 
 /** Sum of squared distances to planes, weighted by area. */
@@ -89,7 +102,7 @@ public:
       const Vector3 &p = Ideal(face[0]), &q = Ideal(face[1]), &r = Ideal(face[2]);
       const Vector3  normal = (q - p).cross(r - p);
       const double   twice = normal.norm();
-      if (twice > 0)
+      if (twice > LeastArea)
       {
         for (IdType v : face)
         {
@@ -200,7 +213,7 @@ private:
   double
   SurfaceError(IdType v, IdType w) const
   {
-    return m_Quadrics[v - m_First].Distance(Ideal(w) - m_Origin);
+    return Rounded(m_Quadrics[v - m_First].Distance(Ideal(w) - m_Origin), ErrorUnit);
   }
 
   /** Looks for the best target of v. */
@@ -215,12 +228,14 @@ private:
       const double error = onSurface ? SurfaceError(v, w) : 0.0;
       if (error <= m_Places.tolerance)
       {
-        m_Rated.emplace_back(
-          ErrorWeight * error + (Place(v, onSurface) - Ideal(w)).norm() * (w < m_First ? 1.0 : SteinerTargetFactor), w);
+        m_Rated.emplace_back(Rounded(ErrorWeight * error + (Place(v, onSurface) - Ideal(w)).norm() *
+                                                             (w < m_First ? 1.0 : SteinerTargetFactor),
+                                     CostUnit),
+                             w);
       }
     }
     std::sort(m_Rated.begin(), m_Rated.end());
-    const double floor = std::min(m_Floor, WorstShape(v));
+    const double floor = Floor(v);
     m_Target[v] = -1;
     m_Cost[v] = std::numeric_limits<double>::infinity();
     for (const auto & [least, w] : m_Rated)
@@ -235,7 +250,7 @@ private:
         continue;
       }
       const double lack = std::max(0.0, 1.0 - shape / GoodShape);
-      const double cost = least * (1.0 + ShapeWeight * lack * lack);
+      const double cost = Rounded(least * (1.0 + ShapeWeight * lack * lack), CostUnit);
       if (cost < m_Cost[v] && m_Complex.CanCollapse(v, w) == MeshOperation::Done && StaysPositive(v, w))
       {
         m_Cost[v] = cost;
@@ -250,9 +265,10 @@ private:
   StillAllowed(IdType v) const
   {
     const IdType w = m_Target[v];
-    const double floor = std::min(m_Floor, WorstShape(v));
-    return w >= 0 && !m_Gone[w] && (m_Complex.Dimension(v) == 3 || SurfaceError(v, w) <= m_Places.tolerance) && AreJoined(v, w) && ShapeAfter(v, w, floor) >= floor &&
-           m_Complex.CanCollapse(v, w) == MeshOperation::Done && StaysPositive(v, w);
+    const double floor = Floor(v);
+    return w >= 0 && !m_Gone[w] && (m_Complex.Dimension(v) == 3 || SurfaceError(v, w) <= m_Places.tolerance) &&
+           AreJoined(v, w) && ShapeAfter(v, w, floor) >= floor && m_Complex.CanCollapse(v, w) == MeshOperation::Done &&
+           StaysPositive(v, w);
   }
 
   /** Where v counts as being: points inside regions have no place of their own. */
@@ -304,6 +320,14 @@ private:
     }
   }
 
+  /** What the cells around v must have when it is gone: no less than they had, up to what is asked for, and no sign
+   * that depends on rounding. */
+  double
+  Floor(IdType v) const
+  {
+    return std::max(LeastShape, std::min(m_Floor, WorstShape(v)));
+  }
+
   /** The worst shape of the bone around v. */
   double
   WorstShape(IdType v) const
@@ -343,7 +367,7 @@ private:
           return worst;
         }
       }
-      else if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > 0))
+      else if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > LeastVolume))
       {
         return -1.0;
       }

@@ -5,40 +5,89 @@
 
 #include "boneMeshValidator.h"
 #include "boneRandomStack.h"
+#include "boneSurfaceAudit.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <map>
+#include <random>
 #include <set>
 
 namespace
 {
-/** Points of the boundary of the regions from `least` inward at which its faces do not form a single fan. */
-int
-PinchedPoints(const bone::MeshArrays & mesh, int least)
+using CellPlaces = std::array<std::array<double, 3>, 4>;
+
+/** The cells by where their points lie, whatever their numbers. */
+std::vector<CellPlaces>
+CellsByPlace(const bone::MeshArrays & mesh)
 {
-  std::map<bone::IdType, std::map<bone::IdType, bone::IdType>> links;
-  std::map<bone::IdType, std::size_t>                          faces;
-  for (const auto & face : bone::BoundaryFaces(mesh, least))
+  std::vector<CellPlaces> cells;
+  for (const bone::Id4 & c : mesh.tetrahedra)
   {
-    for (int k = 0; k < 3; ++k)
+    CellPlaces cell;
+    for (int i = 0; i < 4; ++i)
     {
-      links[face[k]][face[(k + 1) % 3]] = face[(k + 2) % 3];
-      ++faces[face[k]];
+      const bone::Vector3 & p = mesh.points[c[i]];
+      cell[i] = { p.x(), p.y(), p.z() };
+    }
+    std::sort(cell.begin(), cell.end());
+    cells.push_back(cell);
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+/** The same contours in another order, with other ids and other first points. */
+bone::ContourStack::Pointer
+Renumbered(const bone::ContourStack & stack, unsigned seed)
+{
+  std::mt19937 engine(seed);
+  auto         other = bone::ContourStack::New();
+  other->Graft(&stack);
+  auto slices = stack.GetSlices();
+  for (bone::ContourSlice & slice : slices)
+  {
+    std::shuffle(slice.contours.begin(), slice.contours.end(), engine);
+    for (std::size_t c = 0; c < slice.contours.size(); ++c)
+    {
+      auto & points = slice.contours[c].points;
+      slice.contours[c].id = static_cast<int>(c);
+      if (!slice.contours[c].axis)
+      {
+        std::rotate(
+          points.begin(), points.begin() + static_cast<std::ptrdiff_t>(engine() % points.size()), points.end());
+      }
     }
   }
-  int pinched = 0;
-  for (const auto & [point, next] : links)
+  other->SetSlices(slices);
+  return other;
+}
+
+bone::ContourStack::Pointer
+Turned(const bone::ContourStack & stack, const Eigen::Matrix3d & rotation)
+{
+  auto other = bone::ContourStack::New();
+  other->Graft(&stack);
+  auto slices = stack.GetSlices();
+  for (bone::ContourSlice & slice : slices)
   {
-    std::size_t length = 0;
-    auto        here = next.begin();
-    do
+    slice.origin = rotation * slice.origin;
+    for (bone::Contour & contour : slice.contours)
     {
-      here = next.find(here->second);
-      ++length;
-    } while (here != next.end() && here != next.begin() && length <= faces[point]);
-    pinched += here == next.end() || length != faces[point];
+      for (bone::Vector3 & p : contour.points)
+      {
+        p = rotation * p;
+      }
+    }
   }
-  return pinched;
+  // A frame of its own, not the turned one.
+  const bone::Vector3 normal = rotation * stack.GetNormal();
+  other->SetFrame(normal.unitOrthogonal(), normal.cross(normal.unitOrthogonal()));
+  other->SetSlices(slices);
+  return other;
 }
 
 class RandomStackTest : public testing::TestWithParam<unsigned>
@@ -56,7 +105,7 @@ TEST_P(RandomStackTest, IsTiledWithAllItsContoursAndLayers)
   EXPECT_EQ(report.loopsLeftOut, 0);
   for (int least = 1; least <= 3; ++least)
   {
-    EXPECT_EQ(PinchedPoints(mesh, least), 0) << "regions from " << least << " inward";
+    EXPECT_EQ(bone::PinchedPoints(mesh, least), 0) << "regions from " << least << " inward";
   }
   // Every contour's points are there, but for those of holes that were closed because they are voids.
   std::set<std::array<double, 3>> points;
@@ -74,6 +123,31 @@ TEST_P(RandomStackTest, IsTiledWithAllItsContoursAndLayers)
     }
   }
   EXPECT_EQ(missing, report.holesLeftOut);
+}
+
+TEST(ContourTiler, RenumberingChangesNothingButTheNumbering)
+{
+  for (const unsigned seed : { 1u, 4u })
+  {
+    const auto         stack = bone::RandomStack(seed).Make();
+    bone::TilingReport report;
+    const auto         mesh = bone::TileContours(*stack, {}, report);
+    EXPECT_TRUE(CellsByPlace(mesh) == CellsByPlace(bone::TileContours(*Renumbered(*stack, seed), {}, report))) << seed;
+  }
+}
+
+TEST(ContourTiler, TurningTheStackKeepsTheNumberOfCells)
+{
+  const auto         stack = bone::RandomStack(4).Make();
+  bone::TilingReport report;
+  const auto         count = static_cast<double>(bone::TileContours(*stack, {}, report).tetrahedra.size());
+  for (const double angle : { 0.5, 2.0, 4.0 })
+  {
+    const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(angle, bone::Vector3(0.3, angle - 2.0, 1.0).normalized()).toRotationMatrix();
+    const auto mesh = bone::TileContours(*Turned(*stack, rotation), {}, report);
+    EXPECT_NEAR(static_cast<double>(mesh.tetrahedra.size()) / count, 1.0, 0.01) << angle;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomStackTest, testing::Range(0u, 8u));
