@@ -14,12 +14,12 @@ struct ImprovementParameters
   int    iterations{ 4 };      ///< of smoothing at the start
   double distanceBound{ 0.3 }; ///< mm, how far boundary and interfaces may be faired, and their triangles changed
   int    fairingIterations{ 10 };
-  int    rounds{ 3 };             ///< of smoothing, flips, repair and optimisation
+  int    rounds{ 4 };             ///< of smoothing, flips, repair and optimisation
   int    optimizationPasses{ 2 }; ///< a round
   double targetAngle{ 0.44 };     ///< cells below are flipped, and their inner points optimised
   double repairAngle{ 0.35 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
-  double gradation{ 0.8 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
+  double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
 };
 
 struct ImprovementReport

@@ -43,13 +43,13 @@ public:
   /** Steps that fair the surfaces; default 10. */
   itkSetMacro(FairingIterations, int);
   itkGetConstMacro(FairingIterations, int);
-  /** Rounds of smoothing, swaps, repair and optimisation; default 3. */
+  /** Rounds of smoothing, swaps, repair and optimisation; default 4. */
   itkSetMacro(Rounds, int);
   itkGetConstMacro(Rounds, int);
   /** Cells with a dihedral angle below are swapped and their inner points optimised, rad; default 0.44 (25 degrees). */
   itkSetMacro(TargetAngle, double);
   itkGetConstMacro(TargetAngle, double);
-  /** How cells grow inward from the surfaces, mm a mm; default 0.8. 0: no points are added. */
+  /** How cells grow inward from the surfaces, mm a mm; default 0.7. 0: no points are added. */
   itkSetMacro(Gradation, double);
   itkGetConstMacro(Gradation, double);
   /** Passes of optimisation a round; default 2. */
@@ -76,9 +76,9 @@ private:
   int               m_Iterations{ 4 };
   double            m_DistanceBound{ 0.3 };
   int               m_FairingIterations{ 10 };
-  int               m_Rounds{ 3 };
+  int               m_Rounds{ 4 };
   double            m_TargetAngle{ 0.44 };
-  double            m_Gradation{ 0.8 };
+  double            m_Gradation{ 0.7 };
   int               m_OptimizationPasses{ 2 };
   ImprovementReport m_Report;
 };
