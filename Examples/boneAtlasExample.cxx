@@ -69,7 +69,10 @@ Model(Source * source, unsigned int axis)
 }
 
 void
-DrawModes(const bone::StatisticalModel & model, const std::string & folder, const bone::Vector3 & look, const bone::Vector3 & up)
+DrawModes(const bone::StatisticalModel & model,
+          const std::string &            folder,
+          const bone::Vector3 &          look,
+          const bone::Vector3 &          up)
 {
   const auto shapes = bone::DrawShapeModes(model, 2, look, up);
   bone::WriteImage(shapes.GetPointer(), folder + "/shape_modes.png");
@@ -78,8 +81,11 @@ DrawModes(const bone::StatisticalModel & model, const std::string & folder, cons
 }
 
 void
-Train(bone::PopulationRegistration & population, const std::vector<std::function<Subject()>> & subjects, const std::string & folder,
-      const bone::Vector3 & look, const bone::Vector3 & up)
+Train(bone::PopulationRegistration &                population,
+      const std::vector<std::function<Subject()>> & subjects,
+      const std::string &                           folder,
+      const bone::Vector3 &                         look,
+      const bone::Vector3 &                         up)
 {
   auto set = bone::MeshTrainingSet<>::New();
   for (const auto & make : subjects)
@@ -104,14 +110,14 @@ Train(bone::PopulationRegistration & population, const std::vector<std::function
 void
 TrainHemipelves(const std::string & folder)
 {
-  bone::PopulationRegistration            population(Model(Scan(bone::MakePhantom("hemipelvis", 0)), 2), /* degree */ 2);
-  std::vector<std::function<Subject()>>   subjects;
+  bone::PopulationRegistration          population(Model(Scan(bone::MakePhantom("hemipelvis", 0)), 2), /* degree */ 2);
+  std::vector<std::function<Subject()>> subjects;
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
   {
     subjects.push_back([seed] {
-      const auto          source = Scan(bone::MakePhantom("hemipelvis", seed));
+      const auto                source = Scan(bone::MakePhantom("hemipelvis", seed));
       std::vector<bone::IdType> id;
-      const auto          surface = bone::ExteriorSurface(Model(source, 2)->GetArrays(), id);
+      const auto                surface = bone::ExteriorSurface(Model(source, 2)->GetArrays(), id);
       return Subject{ "hemipelvis " + std::to_string(seed), surface, source->GetOutput() };
     });
   }
@@ -128,7 +134,8 @@ ScanSurface(const bone::TriangleSurface & surface)
 void
 TrainSurfaces(const std::string & folder, const std::vector<std::string> & files)
 {
-  bone::PopulationRegistration          population(Model(ScanSurface(bone::ReadTriangleSurface(files.front())), 0), /* degree */ 2);
+  bone::PopulationRegistration          population(Model(ScanSurface(bone::ReadTriangleSurface(files.front())), 0),
+                                          /* degree */ 2);
   std::vector<std::function<Subject()>> subjects;
   for (const std::string & file : files)
   {

@@ -58,7 +58,8 @@ FillTriangle(const std::array<Vector3, 3> & p, float value, Panel & panel, std::
   }
   const auto range = [&p](int axis, int size) {
     const auto [low, high] = std::minmax({ p[0][axis], p[1][axis], p[2][axis] });
-    return std::make_pair(std::max(0, static_cast<int>(std::ceil(low))), std::min(size - 1, static_cast<int>(std::floor(high))));
+    return std::make_pair(std::max(0, static_cast<int>(std::ceil(low))),
+                          std::min(size - 1, static_cast<int>(std::floor(high))));
   };
   const auto [left, right] = range(0, panel.columns);
   const auto [top, bottom] = range(1, panel.rows);
@@ -77,7 +78,8 @@ FillTriangle(const std::array<Vector3, 3> & p, float value, Panel & panel, std::
         continue;
       }
       const double z = w[0] * p[0][2] + w[1] * p[1][2] + w[2] * p[2][2];
-      double &     nearest = depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(panel.columns) + static_cast<std::size_t>(column)];
+      double &     nearest = depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(panel.columns) +
+                               static_cast<std::size_t>(column)];
       if (z < nearest)
       {
         nearest = z;
@@ -175,8 +177,10 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
       surface.points[p] = shapes[i][id[p]];
     }
     const int column = static_cast<int>(i % 3) * columns, row = static_cast<int>(i / 3) * (rows + Head);
-    canvas.DrawPanel(column, row + Head, ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows), { 0.0, 1.1 });
-    canvas.DrawText(column + 8, row + 8, Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
+    canvas.DrawPanel(
+      column, row + Head, ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows), { 0.0, 1.1 });
+    canvas.DrawText(
+      column + 8, row + 8, Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
   }
   return canvas.GetImage();
 }

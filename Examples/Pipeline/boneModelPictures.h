@@ -27,8 +27,8 @@ ShadeSurface(const TriangleSurface & surface,
 PictureImage::Pointer
 DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direction, const Vector3 & up);
 
-/** The paper's Figure 14 b: radiographs at -3, 0 and +3 standard deviations of the first mode of shape, and, where there
- * is a density, of its first mode; beside each its difference to the mean's. */
+/** The paper's Figure 14 b: radiographs at -3, 0 and +3 standard deviations of the first mode of shape, and, where
+ * there is a density, of its first mode; beside each its difference to the mean's. */
 PictureImage::Pointer
 DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up);
 } // namespace bone

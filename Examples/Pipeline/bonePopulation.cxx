@@ -56,7 +56,8 @@ ReadSubjectList(const std::string & path)
     const auto   comma = line.find(',');
     SubjectFiles subject;
     subject.shape = Beside(fs::path(path).parent_path(), Trim(line.substr(0, comma)));
-    subject.ct = comma == std::string::npos ? std::string() : Beside(fs::path(path).parent_path(), Trim(line.substr(comma + 1)));
+    subject.ct =
+      comma == std::string::npos ? std::string() : Beside(fs::path(path).parent_path(), Trim(line.substr(comma + 1)));
     subject.name = fs::path(subject.shape).stem().string();
     subjects.push_back(subject);
   }
@@ -90,7 +91,8 @@ FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh)
     for (std::size_t s = 0; s < values.size(); ++s)
     {
       const Barycentric & mu = kernel.SamplePoints()[s];
-      const Vector3 x = mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] + mu[3] * mesh.points[c[3]];
+      const Vector3       x =
+        mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] + mu[3] * mesh.points[c[3]];
       const CellLocation place = locator.FindNearest(x, hint);
       hint = place.cell;
       const auto cell = static_cast<std::size_t>(place.cell);

@@ -13,7 +13,8 @@
 
 namespace bone
 {
-/** One subject of a population: its bone as a mesh or a closed surface, and its CT where its density is to be fitted. */
+/** One subject of a population: its bone as a mesh or a closed surface, and its CT where its density is to be fitted.
+ */
 struct SubjectFiles
 {
   std::string name;  ///< of the shape's file, without folder and extension
@@ -21,20 +22,20 @@ struct SubjectFiles
   std::string ct;    ///< empty: none
 };
 
-/** Reads a list of subjects, one a line: the shape's file, and after a comma that of the CT where there is one. Names are
- * relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError. */
+/** Reads a list of subjects, one a line: the shape's file, and after a comma that of the CT where there is one. Names
+ * are relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError. */
 std::vector<SubjectFiles>
 ReadSubjectList(const std::string & path);
 
-/** The density of a model at the sample points of another mesh's cells, fitted there with one degree; points outside the
- * model take the nearest place on its boundary. The mesh's density is replaced. Throws itk::ExceptionObject where the
- * model has no density. */
+/** The density of a model at the sample points of another mesh's cells, fitted there with one degree; points outside
+ * the model take the nearest place on its boundary. The mesh's density is replaced. Throws itk::ExceptionObject where
+ * the model has no density. */
 void
 FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh);
 
 /** \class PopulationRegistration
- * \brief Brings subjects onto the topology of a standard model, with their densities (paper 6.1): registration, then the
- * density fit. */
+ * \brief Brings subjects onto the topology of a standard model, with their densities (paper 6.1): registration, then
+ * the density fit. */
 class PopulationRegistration
 {
 public:
@@ -48,8 +49,8 @@ public:
   }
 
   /** The standard model on the subject. A mesh that has the standard's tetrahedra is taken as it is; others are
-   * registered. Density comes from the CT, or else from the subject's own mesh; a surface alone has none. For a mirrored
-   * subject the result lies in the reflected space. */
+   * registered. Density comes from the CT, or else from the subject's own mesh; a surface alone has none. For a
+   * mirrored subject the result lies in the reflected space. */
   MeshArrays
   Bring(const SubjectFiles & subject);
 
@@ -68,10 +69,10 @@ private:
   void
   FitImage(const CTImage * ct, MeshArrays & mesh) const;
 
-  DensityMesh<double>::Pointer         m_Standard;
-  int                                  m_Degree;
-  AtlasRegistrationFilter<>::Pointer   m_Register;
-  bool                                 m_Registered{ false };
+  DensityMesh<double>::Pointer       m_Standard;
+  int                                m_Degree;
+  AtlasRegistrationFilter<>::Pointer m_Register;
+  bool                               m_Registered{ false };
 };
 } // namespace bone
 

@@ -214,25 +214,28 @@ DescribeModel(const StatisticalModel & model)
   Row(os, "size", content.similarity ? "taken out" : "in the shape modes");
   if (model.HasDensity())
   {
-    Row(os, "density", "degree " + std::to_string(content.mean.maximumDegree) + ", " + DensityQuantityName(content.mean.quantity));
+    Row(os,
+        "density",
+        "degree " + std::to_string(content.mean.maximumDegree) + ", " + DensityQuantityName(content.mean.quantity));
   }
-  const auto modes = [&os](const std::string & name, const PrincipalModes & principal, double per, const std::string & unit) {
-    Row(os, name + " modes", principal.GetNumberOfModes());
-    double explained = 0;
-    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(principal.GetNumberOfModes(), 10); ++k)
-    {
-      explained += principal.variances[k];
-      std::ostringstream line;
-      line << std::setprecision(4) << std::sqrt(principal.variances[k] / per) << ' ' << unit << ", "
-           << 100 * explained / principal.totalVariance << " % with those before";
-      Row(os, "  " + name + ' ' + std::to_string(k + 1), line.str());
-    }
-  };
+  const auto modes =
+    [&os](const std::string & name, const PrincipalModes & principal, double per, const std::string & unit) {
+      Row(os, name + " modes", principal.GetNumberOfModes());
+      double explained = 0;
+      for (Eigen::Index k = 0; k < std::min<Eigen::Index>(principal.GetNumberOfModes(), 10); ++k)
+      {
+        explained += principal.variances[k];
+        std::ostringstream line;
+        line << std::setprecision(4) << std::sqrt(principal.variances[k] / per) << ' ' << unit << ", "
+             << 100 * explained / principal.totalVariance << " % with those before";
+        Row(os, "  " + name + ' ' + std::to_string(k + 1), line.str());
+      }
+    };
   modes("shape", content.shape, static_cast<double>(content.mean.points.size()), "mm (root mean square of points)");
   if (model.HasDensity())
   {
     const double per = content.density.weights.size() > 0 ? content.density.weights.sum()
-                                                           : static_cast<double>(content.density.GetDimension());
+                                                          : static_cast<double>(content.density.GetDimension());
     modes("density", content.density, per, "(root mean square of coefficients)");
   }
   if (model.IsCombined())

@@ -106,9 +106,11 @@ AddSampleCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<Options>();
   auto * command = app.add_subcommand("sample", "Make a model from the mean and modes of a statistical model");
   command->add_option("model", options->input, "Statistical model (.h5)")->required();
-  auto * shape = command->add_option("--shape", options->shape, "Shape modes in standard deviations, such as 1=2 3=-1.5")
-                   ->type_name("MODE=SD ...");
-  auto * density = command->add_option("--density", options->density, "Density modes in standard deviations")->type_name("MODE=SD ...");
+  auto * shape =
+    command->add_option("--shape", options->shape, "Shape modes in standard deviations, such as 1=2 3=-1.5")
+      ->type_name("MODE=SD ...");
+  auto * density = command->add_option("--density", options->density, "Density modes in standard deviations")
+                     ->type_name("MODE=SD ...");
   auto * combined = command->add_option("--combined", options->combined, "Combined modes in standard deviations")
                       ->type_name("MODE=SD ...")
                       ->excludes(shape)

@@ -38,7 +38,9 @@ struct Options
 };
 
 std::string
-RegistrationLine(const SubjectFiles & subject, const PopulationRegistration & population, const RegistrationReport & report)
+RegistrationLine(const SubjectFiles &           subject,
+                 const PopulationRegistration & population,
+                 const RegistrationReport &     report)
 {
   std::ostringstream os;
   os << std::left << std::setw(28) << subject.name << std::setprecision(3);
@@ -75,10 +77,11 @@ Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".h5" });
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
-  const std::string standard = options.standard.empty() ? subjects.front().shape : options.standard;
+  const std::string               standard = options.standard.empty() ? subjects.front().shape : options.standard;
   if (standard.size() < 4 || standard.compare(standard.size() - 4, 4, ".vtu") != 0)
   {
-    throw UsageError("the standard model " + standard + " must be a mesh (.vtu): put one first in the list, or give --standard");
+    throw UsageError("the standard model " + standard +
+                     " must be a mesh (.vtu): put one first in the list, or give --standard");
   }
   PopulationRegistration population(ReadDensityMesh(standard), options.degree);
   SetFilter(options, population.GetFilter());
@@ -103,8 +106,8 @@ Run(const Options & options, Session & session)
       throw IOError(subject.shape, ErrorLine(error));
     }
     std::ostringstream name;
-    name << folder.GetPath() << '/' << std::setw(4) << std::setfill('0') << set->GetNumberOfSubjects() + 1 << '_' << subject.name
-         << ".vtu";
+    name << folder.GetPath() << '/' << std::setw(4) << std::setfill('0') << set->GetNumberOfSubjects() + 1 << '_'
+         << subject.name << ".vtu";
     WriteMeshArrays(mesh, name.str());
     set->AddSubject(subject.name, name.str());
     session.Print(RegistrationLine(subject, population, population.GetFilter()->GetReport()));
@@ -144,12 +147,14 @@ void
 AddTrainCommand(CLI::App & app, Action & action)
 {
   auto   options = std::make_shared<Options>();
-  auto * command = app.add_subcommand("train", "Train a statistical model of shape and density from a list of subjects");
+  auto * command =
+    app.add_subcommand("train", "Train a statistical model of shape and density from a list of subjects");
   command
-    ->add_option("list",
-                 options->list,
-                 "Text file with a subject a line: mesh (.vtu) or closed surface (.ply, .vtp, .stl), and after a comma its "
-                 "CT, if its density is to be fitted. Subjects on another topology than the standard model's are registered")
+    ->add_option(
+      "list",
+      options->list,
+      "Text file with a subject a line: mesh (.vtu) or closed surface (.ply, .vtp, .stl), and after a comma its "
+      "CT, if its density is to be fitted. Subjects on another topology than the standard model's are registered")
     ->required();
   command->add_option("--standard", options->standard, "Standard model (.vtu); default: the list's first subject");
   command->add_option("--degree", options->degree, "Degree of densities that are fitted, 0 to 8; default 2")
@@ -159,12 +164,14 @@ AddTrainCommand(CLI::App & app, Action & action)
   command->add_flag("--volume-weighted", options->volumeWeighted, "Weigh densities by the volume of tetrahedra");
   command->add_option("--variance", options->variance, "Share of the variance that the modes explain; default 0.98")
     ->check(Between(0.01, 1));
-  command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")->check(Between(0, 100000));
+  command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")
+    ->check(Between(0, 100000));
   command->add_flag("--reject-outliers", options->rejectOutliers, "Leave outliers out");
   command->add_option("--mirror", options->mirror, "Reflect subjects: never (default), always, or try what fits better")
     ->check(CLI::IsMember({ "never", "always", "try" }).description(""))
     ->type_name("never|always|try");
-  command->add_option("--method", options->method, "Deformation of the surface: adaptive focus (default) or non-rigid ICP")
+  command
+    ->add_option("--method", options->method, "Deformation of the surface: adaptive focus (default) or non-rigid ICP")
     ->check(CLI::IsMember({ "focus", "icp" }).description(""))
     ->type_name("focus|icp");
   command->add_option("--interior", options->interior, "How interior points follow: harmonic (default) or frames")

@@ -63,8 +63,8 @@ Disguise(TriangleSurface & surface, unsigned seed)
 {
   std::mt19937                     generator(seed);
   std::normal_distribution<double> normal;
-  const Eigen::Quaterniond q(normal(generator), normal(generator), normal(generator), normal(generator));
-  AffineMap                pose;
+  const Eigen::Quaterniond         q(normal(generator), normal(generator), normal(generator), normal(generator));
+  AffineMap                        pose;
   pose.linear = q.normalized().toRotationMatrix();
   pose.translation = 200 * Vector3(normal(generator), normal(generator), normal(generator));
   std::vector<IdType> order(surface.points.size());
@@ -86,7 +86,10 @@ Disguise(TriangleSurface & surface, unsigned seed)
 
 /** Where the standard model's exterior points belong on a subject, by the data's own correspondence. */
 std::vector<Vector3>
-KnownPlaces(const TriangleSurface & source, const DirectedSurface & reference, const TriangleSurface & subject, const AffineMap & pose)
+KnownPlaces(const TriangleSurface & source,
+            const DirectedSurface & reference,
+            const TriangleSurface & subject,
+            const AffineMap &       pose)
 {
   std::vector<Vector3> places;
   for (const Vector3 & x : source.points)
@@ -118,9 +121,9 @@ PrintModes(const char * name, const std::vector<ModelQuality> & quality)
 void
 Registration(const std::vector<std::string> & files, const RegistrationParameters & parameters, bool evaluate)
 {
-  const StandardModel     model(ReadMeshArrays(files[0]));
-  const DirectedSurface   reference(ReadTriangleSurface(files[1]));
-  const TriangleSurface & source = model.GetSurface();
+  const StandardModel               model(ReadMeshArrays(files[0]));
+  const DirectedSurface             reference(ReadTriangleSurface(files[1]));
+  const TriangleSurface &           source = model.GetSurface();
   std::vector<std::vector<Vector3>> found, truth;
   std::vector<double>               all;
   for (std::size_t s = 2; s < files.size(); ++s)
@@ -170,10 +173,10 @@ Registration(const std::vector<std::string> & files, const RegistrationParameter
 TriangleSurface
 SurfaceOf(const PhantomModel & phantom)
 {
-  constexpr double    Spacing = 1.5;
+  constexpr double     Spacing = 1.5;
   vtkNew<vtkImageData> grid;
-  double              origin[3];
-  int                 size[3];
+  double               origin[3];
+  int                  size[3];
   for (int i = 0; i < 3; ++i)
   {
     const auto extent = phantom.GetExtent(Vector3::Unit(i));
@@ -194,7 +197,8 @@ SurfaceOf(const PhantomModel & phantom)
       {
         for (int i = 0; i < size[0]; ++i)
         {
-          const Vector3 x(origin[0] + Spacing * i, origin[1] + Spacing * j, origin[2] + Spacing * static_cast<double>(k));
+          const Vector3 x(
+            origin[0] + Spacing * i, origin[1] + Spacing * j, origin[2] + Spacing * static_cast<double>(k));
           *value++ = phantom.EvaluateLevels(x)[0];
         }
       }
@@ -216,7 +220,8 @@ SurfaceOf(const PhantomModel & phantom)
     vtkIdType         count = 0;
     const vtkIdType * ids = nullptr;
     data->GetCellPoints(c, count, ids);
-    surface.triangles.push_back({ static_cast<IdType>(ids[0]), static_cast<IdType>(ids[1]), static_cast<IdType>(ids[2]) });
+    surface.triangles.push_back(
+      { static_cast<IdType>(ids[0]), static_cast<IdType>(ids[1]), static_cast<IdType>(ids[2]) });
   }
   if (EnclosedVolume(surface) < 0)
   {
@@ -246,8 +251,8 @@ FitPhantom(const PhantomModel & phantom, MeshArrays & mesh)
       std::vector<double> values;
       for (const Barycentric & mu : kernel.SamplePoints())
       {
-        values.push_back(phantom.Density(mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] +
-                                         mu[3] * mesh.points[c[3]]));
+        values.push_back(phantom.Density(mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] +
+                                         mu[2] * mesh.points[c[2]] + mu[3] * mesh.points[c[3]]));
       }
       kernel.Fit(values.data(), &mesh.coefficients[t * BernsteinCount(Degree)]);
     },
@@ -273,8 +278,8 @@ MassOf(const MeshArrays & mesh)
 double
 MassOf(const PhantomModel & phantom)
 {
-  constexpr double    Spacing = 0.5;
-  const auto          x = phantom.GetExtent(Vector3::UnitX()), y = phantom.GetExtent(Vector3::UnitY()),
+  constexpr double Spacing = 0.5;
+  const auto       x = phantom.GetExtent(Vector3::UnitX()), y = phantom.GetExtent(Vector3::UnitY()),
              z = phantom.GetExtent(Vector3::UnitZ());
   const auto          slices = static_cast<std::size_t>((z.upper - z.lower) / Spacing) + 1;
   std::vector<double> mass(slices, 0.0);
@@ -321,7 +326,8 @@ Factors(Eigen::Index subjects)
       design(i, j) = uniform(generator);
     }
   }
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(design).householderQ() * Eigen::MatrixXd::Identity(subjects, 6);
+  const Eigen::MatrixXd q =
+    Eigen::HouseholderQR<Eigen::MatrixXd>(design).householderQ() * Eigen::MatrixXd::Identity(subjects, 6);
   return q.rightCols(5) * std::sqrt(static_cast<double>(subjects - 1));
 }
 
@@ -347,7 +353,10 @@ Population(const std::string & standard, Eigen::Index subjects)
     subject.points = model.Register(SurfaceOf(phantom), RegistrationParameters(), report);
     FitPhantom(phantom, subject);
     masses.push_back(MassOf(subject));
-    std::cout << json{ { "phantom", i }, { "surface", report.surfaceDistance }, { "tangled", report.untangling.before }, { "mass", masses.back() } }
+    std::cout << json{ { "phantom", i },
+                       { "surface", report.surfaceDistance },
+                       { "tangled", report.untangling.before },
+                       { "mass", masses.back() } }
               << std::endl;
     auto brought = DensityMesh<double>::New();
     brought->SetArrays(subject);
@@ -357,17 +366,22 @@ Population(const std::string & standard, Eigen::Index subjects)
   estimator->SetInput(set);
   estimator->Update();
   const auto & content = estimator->GetOutput()->GetContent();
-  const char * names[5] = { "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density" };
+  const char * names[5] = {
+    "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density"
+  };
   for (Eigen::Index f = 0; f < 5; ++f)
   {
     const Eigen::MatrixXd scores = f < 3 ? content.shapeScores.leftCols(3) : content.densityScores.leftCols(2);
     std::cout << json{ { "factor", names[f] }, { "explained", Explained(factors.col(f), scores) } } << std::endl;
   }
   const double across = (content.shapeScores.leftCols(3).transpose() * content.densityScores.leftCols(2) /
-                         static_cast<double>(subjects - 1)).cwiseAbs().maxCoeff();
+                         static_cast<double>(subjects - 1))
+                          .cwiseAbs()
+                          .maxCoeff();
   const double mean = MassOf(content.mean), known = MassOf(HemipelvisPhantom());
-  std::cout << json{ { "correlation", across }, { "mass", mean }, { "massOfSubjects", Mean(masses) }, { "massOfPhantom", known } }
-            << std::endl;
+  std::cout << json{
+    { "correlation", across }, { "mass", mean }, { "massOfSubjects", Mean(masses) }, { "massOfPhantom", known }
+  } << std::endl;
 }
 
 /** Subjects made when they are asked for: a mesh with ten modes of shape and of density, and noise. */
@@ -414,7 +428,8 @@ public:
     {
       noise = noise * 1664525U + 1013904223U;
       const double t = static_cast<double>(k) / static_cast<double>(mesh.coefficients.size());
-      mesh.coefficients[k] += 50 * f[5] + 40 * f[6] * std::sin(6 * t) + 30 * f[7] * std::cos(9 * t) + 20 * (noise / 4294967296.0 - 0.5);
+      mesh.coefficients[k] +=
+        50 * f[5] + 40 * f[6] * std::sin(6 * t) + 30 * f[7] * std::cos(9 * t) + 20 * (noise / 4294967296.0 - 0.5);
     }
     return mesh;
   }

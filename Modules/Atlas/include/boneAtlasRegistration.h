@@ -65,13 +65,14 @@ public:
    * tetrahedra, or flat or inverted ones. */
   explicit StandardModel(const MeshArrays & mesh);
 
-  /** The mesh's points on the subject, and what was done. Throws std::invalid_argument where the subject has no surface,
-   * std::runtime_error with their number where tetrahedra are left inverted. */
+  /** The mesh's points on the subject, and what was done. Throws std::invalid_argument where the subject has no
+   * surface, std::runtime_error with their number where tetrahedra are left inverted. */
   std::vector<Vector3>
-  Register(const TriangleSurface &             subject,
-           const RegistrationParameters &      parameters,
-           RegistrationReport &                report,
-           const std::function<void(double)> & progress = [](double) {}) const;
+  Register(
+    const TriangleSurface &             subject,
+    const RegistrationParameters &      parameters,
+    RegistrationReport &                report,
+    const std::function<void(double)> & progress = [](double) {}) const;
 
   const TriangleSurface &
   GetSurface() const

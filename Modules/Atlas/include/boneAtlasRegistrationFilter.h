@@ -16,8 +16,8 @@ namespace bone
  * \brief Carries a standard model to a subject: same topology, the subject's shape (paper 6.1).
  *
  * Inputs: the standard model, a mesh of positive tetrahedra, and the subject, either a mesh, whose exterior surface is
- * taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra, layers, slices and regions on
- * points that lie on the subject; no density, which is fitted after (DensityFitFilter).
+ * taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra, layers, slices and regions
+ * on points that lie on the subject; no density, which is fitted after (DensityFitFilter).
  *
  * 1. Alignment by principal axes and iterative closest points, affine by default (\ref AlignSurfaces).
  * 2. The exterior surface is deformed: adaptive focus (default, \ref DeformAdaptiveFocus) or non-rigid ICP
@@ -26,8 +26,8 @@ namespace bone
  * 4. Inverted tetrahedra are repaired within bounds (\ref UntangleMesh). If some are left, the filter throws and says
  *    how many: no inverted tetrahedron leaves it.
  *
- * Mirror: Never (default), Always, or Try: the subject is reflected at x = 0 first, and the output lies in the reflected
- * space (GetReport().mirrored); ReflectPoints brings points back.
+ * Mirror: Never (default), Always, or Try: the subject is reflected at x = 0 first, and the output lies in the
+ * reflected space (GetReport().mirrored); ReflectPoints brings points back.
  *
  * Results do not depend on the number of threads. Throws itk::ExceptionObject. */
 template <typename TMesh = DensityMesh<double>>

@@ -16,7 +16,8 @@ namespace bone
  *
  * Triangles are sorted into trees by 14 directions (faces and corners of a cube), each with those within 75 degrees of
  * it; a query takes the tree of the direction nearest to its normal, so that matches differ by less than 48 degrees at
- * will and never by more than 103: the two faces of a thin plate are not mixed up. Const use is safe from many threads. */
+ * will and never by more than 103: the two faces of a thin plate are not mixed up. Const use is safe from many threads.
+ */
 class DirectedSurface
 {
 public:

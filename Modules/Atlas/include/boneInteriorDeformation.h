@@ -23,8 +23,8 @@ enum class InteriorRule : int
  *
  * Harmonic: displacement after the alignment, by linear finite elements on the standard mesh; the matrix is factorised
  * once, here, and serves every subject. EigenFrame: for an interior point v, o and the axes F are mean and eigenvectors
- * of the covariance of its nearest exterior points, F' and o' those of their new places; v' = o' + F' F^T (v - o). Signs
- * of F' are those nearest to the alignment's rotation of F.
+ * of the covariance of its nearest exterior points, F' and o' those of their new places; v' = o' + F' F^T (v - o).
+ * Signs of F' are those nearest to the alignment's rotation of F.
  *
  * Const use is safe from many threads. */
 class InteriorDeformation
@@ -66,23 +66,24 @@ struct UntanglingReport
 {
   std::size_t before{ 0 }; ///< flat or inverted cells
   std::size_t after{ 0 };
-  std::size_t moved{ 0 };       ///< points
-  double      exterior{ 0.0 };  ///< largest move of an exterior point, mm
+  std::size_t moved{ 0 };      ///< points
+  double      exterior{ 0.0 }; ///< largest move of an exterior point, mm
 };
 
 /** \brief Makes inverted tetrahedra positive by moving the points around them, exterior ones by a bounded distance.
  *
  * Minimises the mean-ratio distortion of the cells against those of `rest` under `alignment`, with the volume
  * regularised so that it is finite for inverted cells (J. M. Escobar et al., doi:10.1016/S0045-7825(03)00299-8), point
- * by point by damped Newton steps. Nothing is touched where no cell is flat, inverted or below the floor. Deterministic.
+ * by point by damped Newton steps. Nothing is touched where no cell is flat, inverted or below the floor.
+ * Deterministic.
  *
  * `points` are changed; cells and neighbours are those of `rest`. */
 UntanglingReport
-UntangleMesh(const MeshArrays &            rest,
-             const std::vector<IdType> &   exterior,
-             const AffineMap &             alignment,
-             std::vector<Vector3> &        points,
-             const UntanglingParameters &  parameters = UntanglingParameters());
+UntangleMesh(const MeshArrays &           rest,
+             const std::vector<IdType> &  exterior,
+             const AffineMap &            alignment,
+             std::vector<Vector3> &       points,
+             const UntanglingParameters & parameters = UntanglingParameters());
 } // namespace bone
 
 #endif

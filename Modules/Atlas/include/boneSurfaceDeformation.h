@@ -13,12 +13,12 @@ struct AdaptiveFocusParameters
 {
   std::vector<int> rings{ 16, 12, 8, 6, 4, 3, 2 }; ///< radius of the affine segments, in rings of neighbours
   int              iterations{ 8 };                ///< with each radius
-  double           ridge{ 0.01 };      ///< pull of a segment's affine map to the map of the radius before, of its spread
-  double           slide{ 0.1 };       ///< weight of a pull along the surface; across it is 1 more
-  int              attributeLayers{ 6 }; ///< length of the attribute vectors
+  double           ridge{ 0.01 }; ///< pull of a segment's affine map to the map of the radius before, of its spread
+  double           slide{ 0.1 };  ///< weight of a pull along the surface; across it is 1 more
+  int              attributeLayers{ 6 };  ///< length of the attribute vectors
   double           attributeWidth{ 0.3 }; ///< difference of attribute vectors at which a vertex counts a third
-  std::size_t      targetPoints{ 6000 }; ///< points of the target that pull, about
-  double           focus{ 1.0 };       ///< how much more vertices with distinct attributes count at first; 0: not
+  std::size_t      targetPoints{ 6000 };  ///< points of the target that pull, about
+  double           focus{ 1.0 };          ///< how much more vertices with distinct attributes count at first; 0: not
 };
 
 /** \brief Deforms a surface onto another (adaptive-focus deformation, D. Shen, E. H. Herskovits & C. Davatzikos,
@@ -35,7 +35,9 @@ struct AdaptiveFocusParameters
  *    prominent vertices, where the neighbourhood's centroid is farthest off, lead at first (`focus`).
  * Returns the new points. Deterministic, the same for any number of threads. */
 std::vector<Vector3>
-DeformAdaptiveFocus(const TriangleSurface & source, const DirectedSurface & target, const AdaptiveFocusParameters & parameters);
+DeformAdaptiveFocus(const TriangleSurface &         source,
+                    const DirectedSurface &         target,
+                    const AdaptiveFocusParameters & parameters);
 
 /** Parameters of \ref DeformNonRigidICP. */
 struct NonRigidICPParameters
@@ -45,7 +47,8 @@ struct NonRigidICPParameters
   double              tolerance{ 0.05 };                     ///< mean move of a vertex that ends a stiffness, mm
 };
 
-/** \brief Optimal-step non-rigid ICP (B. Amberg, S. Romdhani & T. Vetter, doi:10.1109/CVPR.2007.383165), for comparison.
+/** \brief Optimal-step non-rigid ICP (B. Amberg, S. Romdhani & T. Vetter, doi:10.1109/CVPR.2007.383165), for
+ * comparison.
  *
  * Each vertex has an affine map; those of neighbours differ as little as the stiffness asks for, while vertices come to
  * their closest points. One sparse linear least-squares problem a step. Returns the new points. */

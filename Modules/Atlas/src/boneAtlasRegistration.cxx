@@ -32,8 +32,8 @@ TakeStandard(const MeshArrays & mesh)
   if (mesh.tetrahedra.empty() || inverted > 0)
   {
     std::ostringstream text;
-    text << "The standard model must have tetrahedra, all positively oriented; of its " << mesh.tetrahedra.size() << ", "
-         << inverted << " are flat or inverted.";
+    text << "The standard model must have tetrahedra, all positively oriented; of its " << mesh.tetrahedra.size()
+         << ", " << inverted << " are flat or inverted.";
     throw std::invalid_argument(text.str());
   }
   MeshArrays standard;
@@ -47,7 +47,8 @@ double
 MeanDistance(const std::vector<Vector3> & points, const DirectedSurface & surface)
 {
   std::vector<double> distance(points.size());
-  ParallelLoop(points.size(), 64, [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); });
+  ParallelLoop(
+    points.size(), 64, [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); });
   double sum = 0;
   for (const double d : distance)
   {
@@ -119,8 +120,9 @@ StandardModel::Register(const TriangleSurface &             subject,
   if (report.untangling.after > 0)
   {
     std::ostringstream text;
-    text << report.untangling.after << " of " << m_Mesh.tetrahedra.size() << " tetrahedra are inverted after the registration ("
-         << report.untangling.before << " before their repair; surfaces are " << report.alignmentDistance
+    text << report.untangling.after << " of " << m_Mesh.tetrahedra.size()
+         << " tetrahedra are inverted after the registration (" << report.untangling.before
+         << " before their repair; surfaces are " << report.alignmentDistance
          << " mm apart after the alignment): the subject may be another bone, mirrored, or only a part.";
     throw std::runtime_error(text.str());
   }

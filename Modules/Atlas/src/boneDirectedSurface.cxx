@@ -71,9 +71,10 @@ DirectedSurface::DirectedSurface(const TriangleSurface & surface)
 DirectedSurface::Match
 DirectedSurface::Find(const Vector3 & x, const Vector3 & normal) const
 {
-  const auto bucket = std::max_element(m_Buckets.begin(), m_Buckets.end(), [&normal](const Bucket & a, const Bucket & b) {
-    return a.direction.dot(normal) < b.direction.dot(normal);
-  });
+  const auto bucket =
+    std::max_element(m_Buckets.begin(), m_Buckets.end(), [&normal](const Bucket & a, const Bucket & b) {
+      return a.direction.dot(normal) < b.direction.dot(normal);
+    });
   const auto nearest = bucket->tree.FindNearest(x);
   if (nearest.triangle < 0)
   {
@@ -109,7 +110,8 @@ DirectedSurface::NormalAt(int triangle, const Vector3 & x) const
 {
   const auto &  ids = m_Surface.triangles[static_cast<std::size_t>(triangle)];
   const Vector3 weights = this->Weights(triangle, x);
-  return (weights[0] * m_PointNormals[ids[0]] + weights[1] * m_PointNormals[ids[1]] + weights[2] * m_PointNormals[ids[2]])
+  return (weights[0] * m_PointNormals[ids[0]] + weights[1] * m_PointNormals[ids[1]] +
+          weights[2] * m_PointNormals[ids[2]])
     .normalized();
 }
 } // namespace bone

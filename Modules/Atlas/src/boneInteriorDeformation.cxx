@@ -131,7 +131,8 @@ InteriorDeformation::Deform(InteriorRule rule, const AffineMap & alignment, cons
   {
     throw std::invalid_argument("As many exterior points must be given as the standard model has.");
   }
-  return rule == InteriorRule::Harmonic ? this->DeformHarmonic(alignment, moved) : this->DeformByFrames(alignment, moved);
+  return rule == InteriorRule::Harmonic ? this->DeformHarmonic(alignment, moved)
+                                        : this->DeformByFrames(alignment, moved);
 }
 
 std::vector<Vector3>
@@ -150,8 +151,7 @@ InteriorDeformation::DeformHarmonic(const AffineMap & alignment, const std::vect
     const Eigen::MatrixX3d inner = m_Solver->factor.solve(right);
     for (std::size_t i = 0; i < m_Interior.size(); ++i)
     {
-      points[m_Interior[i]] =
-        alignment(m_Points[m_Interior[i]]) + inner.row(static_cast<Eigen::Index>(i)).transpose();
+      points[m_Interior[i]] = alignment(m_Points[m_Interior[i]]) + inner.row(static_cast<Eigen::Index>(i)).transpose();
     }
   }
   return points;

@@ -103,11 +103,11 @@ private:
     return x;
   }
 
-  std::vector<Vector3>               m_Rest;
-  std::vector<std::array<IdType, 2>> m_Edges;
-  Vector3                            m_Centre;
-  double                             m_Scale;
-  bool                               m_Analyzed{ false };
+  std::vector<Vector3>                                             m_Rest;
+  std::vector<std::array<IdType, 2>>                               m_Edges;
+  Vector3                                                          m_Centre;
+  double                                                           m_Scale;
+  bool                                                             m_Analyzed{ false };
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> m_Factor;
 };
 } // namespace

@@ -72,7 +72,8 @@ PrincipalAxes(const TriangleSurface & surface)
   const Vector3   origin = surface.points.front();
   for (const auto & t : surface.triangles)
   {
-    const Vector3 a = surface.points[t[0]] - origin, b = surface.points[t[1]] - origin, c = surface.points[t[2]] - origin;
+    const Vector3 a = surface.points[t[0]] - origin, b = surface.points[t[1]] - origin,
+                  c = surface.points[t[2]] - origin;
     const double  area = 0.5 * (b - a).cross(c - a).norm();
     const Vector3 m = a + b + c;
     sum += area;
@@ -162,7 +163,7 @@ private:
     };
     const AffineMap back = map.Inverse();
     // Normals go by the inverse transpose.
-    const Eigen::Matrix3d forward = back.linear.transpose(), backward = map.linear.transpose();
+    const Eigen::Matrix3d  forward = back.linear.transpose(), backward = map.linear.transpose();
     std::vector<Candidate> found(m_SourceSamples.size() + m_TargetSamples.size(), Candidate());
     ParallelLoop(m_SourceSamples.size(), Chunk, [&](std::size_t i) {
       const Sample & s = m_SourceSamples[i];

@@ -6,7 +6,6 @@
 #include "boneAcrossFit.h"
 #include "boneParallelLoop.h"
 
-
 #include <algorithm>
 #include <cmath>
 
@@ -88,11 +87,15 @@ struct Pull
 class FocusDeformation
 {
 public:
-  FocusDeformation(const TriangleSurface & source, const DirectedSurface & target, const AdaptiveFocusParameters & parameters)
+  FocusDeformation(const TriangleSurface &         source,
+                   const DirectedSurface &         target,
+                   const AdaptiveFocusParameters & parameters)
     : m_Source(source)
     , m_Target(target)
     , m_P(parameters)
-    , m_Rings(FindRings(source, std::max(parameters.attributeLayers, *std::max_element(parameters.rings.begin(), parameters.rings.end()))))
+    , m_Rings(FindRings(
+        source,
+        std::max(parameters.attributeLayers, *std::max_element(parameters.rings.begin(), parameters.rings.end()))))
     , m_Rest(source.points)
     , m_RestAttributes(AttributeVectors(source.points, m_Rings, parameters.attributeLayers))
     , m_TargetArea(PointAreas(target.GetSurface()))
@@ -131,11 +134,11 @@ private:
     for (std::size_t v = 0; v < n; ++v)
     {
       // Volume spanned with the farthest layer, relative to that of a regular cap of its width.
-      const auto &  start = m_Rings.start[v];
-      const auto    layer = static_cast<std::size_t>(m_P.attributeLayers);
-      Vector3       mean = Vector3::Zero();
-      double        spread = 0;
-      const auto    count = start[layer + 1] - start[1];
+      const auto & start = m_Rings.start[v];
+      const auto   layer = static_cast<std::size_t>(m_P.attributeLayers);
+      Vector3      mean = Vector3::Zero();
+      double       spread = 0;
+      const auto   count = start[layer + 1] - start[1];
       for (auto i = start[1]; i < start[layer + 1]; ++i)
       {
         const Vector3 d = m_Rest[m_Rings.ring[v][i]] - m_Rest[v];
@@ -168,7 +171,8 @@ private:
       const auto   match = m_Target.Find(m_Source.points[v], normals[v]);
       const double agreement =
         match.triangle < 0 ? 0.0 : std::max(0.0, normals[v].dot(m_Target.NormalAt(match.triangle, match.point)));
-      const double change = (attributes.col(static_cast<Eigen::Index>(v)) - m_RestAttributes.col(static_cast<Eigen::Index>(v))).norm();
+      const double change =
+        (attributes.col(static_cast<Eigen::Index>(v)) - m_RestAttributes.col(static_cast<Eigen::Index>(v))).norm();
       pull.place[v] = match.point;
       pull.weight[v] = agreement * agreement / (1 + 2 * (change / m_P.attributeWidth) * (change / m_P.attributeWidth));
     });
@@ -180,10 +184,10 @@ private:
   void
   AddTargetPull(Pull & pull) const
   {
-    const DirectedSurface                     source(m_Source);
-    const auto &                              points = m_Target.GetSurface().points;
-    const std::size_t                         stride = std::max<std::size_t>(1, points.size() / m_P.targetPoints);
-    std::vector<DirectedSurface::Match>       matches(points.size());
+    const DirectedSurface               source(m_Source);
+    const auto &                        points = m_Target.GetSurface().points;
+    const std::size_t                   stride = std::max<std::size_t>(1, points.size() / m_P.targetPoints);
+    std::vector<DirectedSurface::Match> matches(points.size());
     ParallelLoop(points.size() / stride, Chunk, [&](std::size_t i) {
       matches[i * stride] = source.Find(points[i * stride], m_Target.GetPointNormals()[i * stride]);
     });
@@ -198,7 +202,8 @@ private:
       const auto &  ids = m_Source.triangles[static_cast<std::size_t>(matches[p].triangle)];
       const Vector3 share = source.Weights(matches[p].triangle, matches[p].point);
       const double  agreement =
-        static_cast<double>(stride) * std::max(0.0, source.NormalAt(matches[p].triangle, matches[p].point).dot(m_Target.GetPointNormals()[p]));
+        static_cast<double>(stride) *
+        std::max(0.0, source.NormalAt(matches[p].triangle, matches[p].point).dot(m_Target.GetPointNormals()[p]));
       for (int i = 0; i < 3; ++i)
       {
         const double w = m_TargetArea[p] * share[i] * agreement;
@@ -212,8 +217,9 @@ private:
       {
         // Both directions count by the area they stand for.
         const double both = m_SourceArea[v] * pull.weight[v] + weight[v];
-        pull.place[v] = (m_SourceArea[v] * pull.weight[v] * pull.place[v] +
-                         weight[v] * (m_Source.points[v] + sum[v] / weight[v])) / both;
+        pull.place[v] =
+          (m_SourceArea[v] * pull.weight[v] * pull.place[v] + weight[v] * (m_Source.points[v] + sum[v] / weight[v])) /
+          both;
         pull.weight[v] = std::max(pull.weight[v], std::min(1.0, weight[v] / m_SourceArea[v]));
       }
     }
@@ -228,8 +234,7 @@ private:
     std::vector<AcrossFit::Term> terms(m_Rest.size());
     for (std::size_t v = 0; v < m_Rest.size(); ++v)
     {
-      terms[v] =
-        AcrossFit::MakeTerm(normals[v], pull.place[v] - m_Rest[v], m_P.slide, pull.weight[v] * m_Focus[v]);
+      terms[v] = AcrossFit::MakeTerm(normals[v], pull.place[v] - m_Rest[v], m_P.slide, pull.weight[v] * m_Focus[v]);
     }
     std::vector<Vector3> moved(m_Rest.size());
     ParallelLoop(m_Rest.size(), Chunk, [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); });
@@ -332,7 +337,9 @@ AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & ring
 }
 
 std::vector<Vector3>
-DeformAdaptiveFocus(const TriangleSurface & source, const DirectedSurface & target, const AdaptiveFocusParameters & parameters)
+DeformAdaptiveFocus(const TriangleSurface &         source,
+                    const DirectedSurface &         target,
+                    const AdaptiveFocusParameters & parameters)
 {
   return FocusDeformation(source, target, parameters).Run();
 }

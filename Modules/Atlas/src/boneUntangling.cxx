@@ -63,7 +63,7 @@ public:
     {
       return report;
     }
-    for (int i = 0; i < m_P.iterations && this->CountBad(m_P.floor) > 0; ++i)
+    for (int i = 0; i<m_P.iterations && this->CountBad(m_P.floor)> 0; ++i)
     {
       const std::vector<IdType> patch = this->Patch();
       this->SetRegularisation();
@@ -193,9 +193,9 @@ private:
     {
       size += std::cbrt(1.0 / std::abs(m_Inverse[t].determinant())) / static_cast<double>(m_Star[p].size());
     }
-    const double    h = 1e-4 * size, e = this->Energy(p, x);
-    Vector3         gradient;
-    Eigen::Matrix3d hessian;
+    const double          h = 1e-4 * size, e = this->Energy(p, x);
+    Vector3               gradient;
+    Eigen::Matrix3d       hessian;
     std::array<double, 3> plus, minus;
     for (int i = 0; i < 3; ++i)
     {
@@ -213,9 +213,9 @@ private:
       }
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(hessian);
-    const double largest = std::max(eigen.eigenvalues().cwiseAbs().maxCoeff(), 1e-12);
+    const double  largest = std::max(eigen.eigenvalues().cwiseAbs().maxCoeff(), 1e-12);
     const Vector3 curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * largest);
-    Vector3 step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature);
+    Vector3       step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature);
     step *= std::min(1.0, size / std::max(step.norm(), 1e-300));
     for (int k = 0; k < Backtracks; ++k, step *= 0.5)
     {

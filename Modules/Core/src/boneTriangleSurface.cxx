@@ -41,7 +41,8 @@ PointNormals(const TriangleSurface & surface)
   std::vector<Vector3> normals(surface.points.size(), Vector3::Zero());
   for (const auto & t : surface.triangles)
   {
-    const Vector3 normal = (surface.points[t[1]] - surface.points[t[0]]).cross(surface.points[t[2]] - surface.points[t[0]]);
+    const Vector3 normal =
+      (surface.points[t[1]] - surface.points[t[0]]).cross(surface.points[t[2]] - surface.points[t[0]]);
     for (const IdType p : t)
     {
       normals[p] += normal;

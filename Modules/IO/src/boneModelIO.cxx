@@ -210,7 +210,10 @@ PutStatismo(H5::H5File & file, const StatisticalModelContent & content)
 }
 
 void
-PutModes(const H5::Group & parent, const std::string & name, const PrincipalModes & modes, const Eigen::MatrixXd & scores)
+PutModes(const H5::Group &       parent,
+         const std::string &     name,
+         const PrincipalModes &  modes,
+         const Eigen::MatrixXd & scores)
 {
   const H5::Group group = parent.createGroup(name);
   Put(group, "mean", modes.mean);
@@ -258,7 +261,7 @@ PutInts(const H5::Group & group, const std::string & name, const std::vector<int
 void
 PutModel(H5::H5File & file, const StatisticalModelContent & content)
 {
-  const H5::Group group = file.createGroup("/bonetk");
+  const H5::Group    group = file.createGroup("/bonetk");
   const MeshArrays & mean = content.mean;
   PutScalar<int>(group, "version", LayoutVersion);
   PutScalar<int>(group, "similarity", content.similarity ? 1 : 0);

@@ -66,9 +66,9 @@ using ModelIO = bone::FileTest;
 
 TEST_F(ModelIO, WhatWasWrittenIsRead)
 {
-  const auto                  model = ReadStatisticalModel(WriteModel(Path("atlas.h5")));
-  const auto &                a = Content();
-  const auto &                b = model->GetContent();
+  const auto   model = ReadStatisticalModel(WriteModel(Path("atlas.h5")));
+  const auto & a = Content();
+  const auto & b = model->GetContent();
   EXPECT_EQ(a.shape.mean, b.shape.mean);
   EXPECT_EQ(a.shape.modes, b.shape.modes);
   EXPECT_EQ(a.shape.variances, b.shape.variances);
@@ -90,8 +90,8 @@ TEST_F(ModelIO, WhatWasWrittenIsRead)
 /** The names, types and sizes that statismo 0.9 and scalismo look for. */
 TEST_F(ModelIO, ShapeIsInTheStatismoLayout)
 {
-  const H5::H5File            file(WriteModel(Path("atlas.h5")), H5F_ACC_RDONLY);
-  const auto                  sizes = [&file](const char * name) {
+  const H5::H5File file(WriteModel(Path("atlas.h5")), H5F_ACC_RDONLY);
+  const auto       sizes = [&file](const char * name) {
     const H5::DataSpace  space = file.openDataSet(name).getSpace();
     std::vector<hsize_t> dims(static_cast<std::size_t>(space.getSimpleExtentNdims()));
     space.getSimpleExtentDims(dims.data());
@@ -135,7 +135,7 @@ TEST_F(ModelIO, RefusesWhatIsNoModel)
 
 TEST_F(ModelIO, RefusesIdsOutOfRange)
 {
-  const std::string           path = WriteModel(Path("atlas.h5"));
+  const std::string path = WriteModel(Path("atlas.h5"));
   {
     H5::H5File file(path, H5F_ACC_RDWR);
     const int  ids[8] = { 0, 1, 2, 3, 1, 2, 3, 5 };
