@@ -17,6 +17,7 @@ namespace
 {
 constexpr int Side = 420; // pixels of a panel's longer side
 constexpr int Head = 30;  // above each row, for its name
+constexpr int Least = 220; // of a panel's width, for its name
 
 /** Size of what is looked at, across and up, mm. */
 struct Extent
@@ -167,7 +168,7 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
   }
   const Extent extent = FindExtent(shapes, direction.cross(up), up);
   const double pixel = 1.05 * std::max(extent.across, extent.height) / Side;
-  const int    columns = static_cast<int>(std::ceil(1.05 * extent.across / pixel)) + 20;
+  const int    columns = std::max(Least, static_cast<int>(std::ceil(1.05 * extent.across / pixel)) + 20);
   const int    rows = static_cast<int>(std::ceil(1.05 * extent.height / pixel));
   Canvas       canvas(3 * columns, modes * (rows + Head));
   for (std::size_t i = 0; i < shapes.size(); ++i)
@@ -214,16 +215,17 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
   auto geometry = XRayGeometry::New();
   geometry->SetView(XRayGeometry::Framing(lower, upper, direction, up, 900.0, 1100.0, Side));
   Panel        mean = Radiograph(rows[0].second[1], geometry);
+  const int    width = std::max(mean.columns, Least);
   const double brightest = *std::max_element(mean.values.begin(), mean.values.end());
-  Canvas       canvas(5 * mean.columns, static_cast<int>(rows.size()) * (mean.rows + Head));
+  Canvas       canvas(5 * width, static_cast<int>(rows.size()) * (mean.rows + Head));
   for (std::size_t r = 0; r < rows.size(); ++r)
   {
     const int top = static_cast<int>(r) * (mean.rows + Head);
     for (int i = 0; i < 3; ++i)
     {
       Panel panel = Radiograph(rows[r].second[static_cast<std::size_t>(i)], geometry);
-      canvas.DrawPanel(i * mean.columns, top + Head, panel, { 0.0, brightest });
-      canvas.DrawText(i * mean.columns + 8, top + 8, Title(rows[r].first, 0, 3.0 * (i - 1)));
+      canvas.DrawPanel(i * width, top + Head, panel, { 0.0, brightest });
+      canvas.DrawText(i * width + 8, top + 8, Title(rows[r].first, 0, 3.0 * (i - 1)));
       if (i == 1)
       {
         continue;
@@ -232,7 +234,7 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
       {
         panel.values[k] -= mean.values[k];
       }
-      const int column = (i == 0 ? 3 : 4) * mean.columns;
+      const int column = (i == 0 ? 3 : 4) * width;
       canvas.DrawDifference(column, top + Head, panel, 0.5 * brightest);
       canvas.DrawText(column + 8, top + 8, i == 0 ? "-3 SD - MEAN" : "+3 SD - MEAN");
     }
