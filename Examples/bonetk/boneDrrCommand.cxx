@@ -177,13 +177,16 @@ AddDrrCommand(CLI::App & app, Action & action)
     "--bilinear", options->bilinear, "Turn HU into attenuation, bone along a line of its own (CT only)");
   command->add_flag("--walk", options->walk, "Walk each ray from cell to cell, slowly, and say how many it passes");
   command
-    ->add_option("--region", options->region, "Only this region of the mesh: cortical, trabecular, cavity or its number")
+    ->add_option(
+      "--region", options->region, "Only this region of the mesh: cortical, trabecular, cavity or its number")
     ->transform(CLI::Transformer(std::map<std::string, int>{ { "cortical", 1 }, { "trabecular", 2 }, { "cavity", 3 } })
                   .description(""))
     ->check(CLI::PositiveNumber.description(""));
   command
-    ->add_option("--intensity", options->intensity, "Write what a detector sees of this many photons a pixel, not the "
-                                                    "line integrals (with --attenuation or --bilinear)")
+    ->add_option("--intensity",
+                 options->intensity,
+                 "Write what a detector sees of this many photons a pixel, not the "
+                 "line integrals (with --attenuation or --bilinear)")
     ->check(Positive());
   command->add_option("--noise", options->noise, "Seed of quantum noise (with --intensity)")
     ->check(CLI::PositiveNumber.description(""));

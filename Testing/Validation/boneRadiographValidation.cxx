@@ -94,9 +94,8 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
   {
     pointers.push_back(&images[i]);
   }
-  Time("derivatives " + path, 15, [&]() {
-    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers);
-  });
+  Time(
+    "derivatives " + path, 15, [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers); });
 }
 
 /** ITK's ray caster turns no axes: points are turned about the image's origin. It counts what is above 0. */

@@ -16,12 +16,12 @@ namespace bone
 /** \class DRRAdjointFilter
  * \brief From radiographs back to a density model: the transpose of DRRImageFilter.
  *
- * For f = sum over the pixels of Image * radiograph: with the derivative of any function of the radiograph as Image, the
- * outputs are that function's derivatives by all of the model.
+ * For f = sum over the pixels of Image * radiograph: with the derivative of any function of the radiograph as Image,
+ * the outputs are that function's derivatives by all of the model.
  *
- * Inputs: the mesh (primary); for each view an "Image" of columns x rows pixels (third size 1 or none; its place in space
- * is not looked at) and a "Geometry" (SetImage(i, ...), SetGeometry(i, ...); without i view 0), over which the outputs
- * are summed. Outputs: the mesh with df/dc in place of its density coefficients c (quantity unknown), and
+ * Inputs: the mesh (primary); for each view an "Image" of columns x rows pixels (third size 1 or none; its place in
+ * space is not looked at) and a "Geometry" (SetImage(i, ...), SetGeometry(i, ...); without i view 0), over which the
+ * outputs are summed. Outputs: the mesh with df/dc in place of its density coefficients c (quantity unknown), and
  * GetPointGradient(), df/dx of each point, per mm.
  *
  * Parameters as DRRImageFilter's: MinimumRegion, MaximumRegion (what is not selected has derivative 0), HUToAttenuation

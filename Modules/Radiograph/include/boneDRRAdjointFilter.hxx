@@ -86,7 +86,8 @@ DRRAdjointFilter<TMesh, TImage>::GenerateData()
   };
   std::vector<double>  sum(arrays.coefficients.size(), 0.0), coefficients(sum.size());
   std::vector<Vector3> gradient(arrays.points.size(), Vector3(Vector3::Zero())), points(gradient.size());
-  for (unsigned int view = 0; view == 0 || this->GetGeometry(view) != nullptr || this->GetImage(view) != nullptr; ++view)
+  for (unsigned int view = 0; view == 0 || this->GetGeometry(view) != nullptr || this->GetImage(view) != nullptr;
+       ++view)
   {
     const std::vector<float> weights = this->GetWeights(view);
     BackprojectToMesh(arrays.points,

@@ -54,8 +54,8 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vecto
     if (mode.size() != points.size() ||
         !std::all_of(mode.begin(), mode.end(), [](const Vector3 & v) { return v.allFinite(); }))
     {
-      itkExceptionMacro("Shape mode " << m << " has " << mode.size() << " displacements; it must have "
-                                      << points.size() << ", one a point, all finite.");
+      itkExceptionMacro("Shape mode " << m << " has " << mode.size() << " displacements; it must have " << points.size()
+                                      << ", one a point, all finite.");
     }
   }
   for (std::size_t m = 0; m < m_Modes.density.size(); ++m)

@@ -30,9 +30,10 @@ struct RadiographModes
 /** \brief ProjectMesh with the image's derivatives, in the same pass over the tetrahedra.
  *
  * `images` are 1 + modes.Count() of rows x columns: the radiograph, then its derivative by each mode. Exact derivatives
- * of the integrals where the image has any: it has kinks at the projected edges, and jumps at faces of the outer surface that
- * are seen edge-on. Shape modes must have a displacement for each point, density modes a number for each coefficient.
- * Beside the output, memory is needed for one band of rows a thread, and for a displacement of each point and shape mode.
+ * of the integrals where the image has any: it has kinks at the projected edges, and jumps at faces of the outer
+ * surface that are seen edge-on. Shape modes must have a displacement for each point, density modes a number for each
+ * coefficient. Beside the output, memory is needed for one band of rows a thread, and for a displacement of each point
+ * and shape mode.
  */
 void
 ProjectMeshDerivatives(const std::vector<Vector3> &  points,

@@ -26,8 +26,8 @@ struct MeshRadiographOptions
   bool   portable{ false }; ///< ProjectMesh: leave the processor's newer instructions alone
 };
 
-/** Why a radiograph cannot be made of this mesh, its density converted as said (None or WaterScaled), and what to do; empty
- * where it can. */
+/** Why a radiograph cannot be made of this mesh, its density converted as said (None or WaterScaled), and what to do;
+ * empty where it can. */
 std::string
 FindObstacle(const std::vector<Vector3> &  points,
              const MeshArrays &            cells,

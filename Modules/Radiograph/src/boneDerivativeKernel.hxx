@@ -1,10 +1,11 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see for the cell's frame.
+// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see for the cell's
+// frame.
 //
-// The rays of a row (one eta) lie in a plane with coordinates X = (1 + kappa z) xi and z, where a density of degree N is
-// a polynomial of that degree in two variables: for any density, the integral along a ray is a sum over the moments
+// The rays of a row (one eta) lie in a plane with coordinates X = (1 + kappa z) xi and z, where a density of degree N
+// is a polynomial of that degree in two variables: for any density, the integral along a ray is a sum over the moments
 //   I_ak = integral of X^a z^k dz,  a + k <= N,
 // times coefficients that are polynomials in eta ("levels" below). The moments serve every density mode.
 //
@@ -18,316 +19,14 @@
 //
 // The adjoint sums the same functions over the pixels of each row, then by levels over the rows.
 
+#include "boneDerivativeMaps.hxx"
+
 namespace bone
 {
 namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-/** function(0), ..., function(TCount - 1), unrolled where it is short. */
-template <int TCount, int TFirst = 0, typename TFunction>
-inline __attribute__((always_inline)) void
-Repeat(const TFunction & function)
-{
-  if constexpr (TCount > 21)
-  {
-    for (int i = 0; i < TCount; ++i)
-    {
-      function(i);
-    }
-  }
-  else if constexpr (TFirst < TCount)
-  {
-    function(TFirst);
-    Repeat<TCount, TFirst + 1>(function);
-  }
-}
-
-/** Products X^a z^k with a + k <= N: by a, then by k. */
-template <int N>
-struct PlaneBasis
-{
-  static constexpr int count = PlaneCount(N);
-  static constexpr int
-  At(int a, int k)
-  {
-    return a * (N + 1) - a * (a - 1) / 2 + k;
-  }
-
-  /** products times `first`. */
-  template <typename TLanes>
-  static void
-  Products(const TLanes & first, const TLanes & x, const TLanes & z, TLanes (&products)[count])
-  {
-    products[0] = first;
-    for (int a = 0; a <= N; ++a)
-    {
-      if (a > 0)
-      {
-        products[At(a, 0)] = products[At(a - 1, 0)] * x;
-      }
-      for (int k = 1; k <= N - a; ++k)
-      {
-        products[At(a, k)] = products[At(a, k - 1)] * z;
-      }
-    }
-  }
-
-  template <typename TReal, typename TLanes>
-  static void
-  Value(const TReal * coefficients, const TLanes & x, const TLanes & z, TLanes & value)
-  {
-    value = TLanes{};
-    for (int a = N; a >= 0; --a)
-    {
-      TLanes inZ = TLanes{} + coefficients[At(a, N - a)];
-      for (int k = N - a - 1; k >= 0; --k)
-      {
-        inZ = inZ * z + coefficients[At(a, k)];
-      }
-      value = value * x + inZ;
-    }
-  }
-};
-
-/** Multiplies a polynomial in z by (1 + kappa z)^times, dropping what would exceed its degree: there is nothing. */
-template <int N>
-inline void
-Magnify(Group kappa, int times, Group (&inZ)[N + 1])
-{
-  for (; times > 0; --times)
-  {
-    for (int k = N; k > 0; --k)
-    {
-      inZ[k] += kappa * inZ[k - 1];
-    }
-  }
-}
-template <int N>
-inline void
-MagnifyAdjoint(Group kappa, int times, Group (&inZ)[N + 1])
-{
-  for (; times > 0; --times)
-  {
-    for (int k = 1; k <= N; ++k)
-    {
-      inZ[k - 1] += kappa * inZ[k];
-    }
-  }
-}
-
-/** The coefficients by moment, levels 0..N of the powers of eta, `stride` apart. */
-template <int N>
-inline void
-SetLevels(const Monomials<N> & monomials, Group kappa, Group * levels, int stride)
-{
-  for (int b = 0; b <= N; ++b)
-  {
-    for (int a = 0; a <= N; ++a)
-    {
-      Group inZ[N + 1] = {};
-      for (int k = 0; k <= N - a - b; ++k)
-      {
-        inZ[k] = monomials.q[a][b][k];
-      }
-      if (a + b <= N)
-      {
-        Magnify<N>(kappa, b, inZ);
-      }
-      for (int k = 0; k <= N - a; ++k)
-      {
-        levels[b * stride + PlaneBasis<N>::At(a, k)] = inZ[k];
-      }
-    }
-  }
-}
-
-/** The transpose. */
-template <int N>
-inline void
-SetLevelsAdjoint(const Group * levels, Group kappa, Monomials<N> & monomials)
-{
-  for (int b = 0; b <= N; ++b)
-  {
-    for (int a = 0; a <= N - b; ++a)
-    {
-      Group inZ[N + 1] = {};
-      for (int k = 0; k <= N - a; ++k)
-      {
-        inZ[k] = levels[b * PlaneBasis<N>::count + PlaneBasis<N>::At(a, k)];
-      }
-      MagnifyAdjoint<N>(kappa, b, inZ);
-      for (int k = 0; k <= N - a - b; ++k)
-      {
-        monomials.q[a][b][k] = inZ[k];
-      }
-    }
-  }
-}
-
-/** The transpose of Blossom: from sums by monomial to sums by Bernstein coefficient, added to `out`. */
-template <int N, int D>
-struct BlossomAdjoint
-{
-  static void
-  Run(Group * out, const Group (&mu)[4][4], int next, int (&exponent)[4], const Monomials<N> & sums)
-  {
-    for (int w = next; w < 4; ++w)
-    {
-      Group in[CoefficientCount(D - 1)] = {};
-      ++exponent[w];
-      BlossomAdjoint<N, D - 1>::Run(in, mu, w, exponent, sums);
-      --exponent[w];
-      for (int p = 0; p < CoefficientCount(D - 1); ++p)
-      {
-        out[p] += mu[w][0] * in[p];
-        out[raise.second[p]] += mu[w][1] * in[p];
-        out[raise.third[p]] += mu[w][2] * in[p];
-        out[raise.third[p] + 1] += mu[w][3] * in[p];
-      }
-    }
-  }
-};
-
-template <int N>
-struct BlossomAdjoint<N, 0>
-{
-  static void
-  Run(Group * out, const Group (&)[4][4], int, int (&exponent)[4], const Monomials<N> & sums)
-  {
-    out[0] += Multinomial<N>(exponent) * sums.q[exponent[1]][exponent[2]][exponent[3]];
-  }
-};
-
-/** How much rounding may grow: bound of the monomials' magnitudes for control values within [-1, 1]. */
-template <int N>
-inline Group
-Growth(const GroupFrame & frame)
-{
-  Group largest{};
-  for (int i = 0; i < 4; ++i)
-  {
-    const Group reach =
-      Absolute(frame.mu[0][i]) + frame.inPlane[i] + Absolute(frame.mu[3][i]);
-    largest = reach > largest ? reach : largest;
-  }
-  Group growth = Group{} + 1.0;
-  for (int i = 0; i < N; ++i)
-  {
-    growth *= largest;
-  }
-  return growth;
-}
-
-/** From a vertex's displacement as (s, column s, row s) (parallel beam: (s, column, row)) to the frame's X, Y, z. */
-struct VertexMotion
-{
-  Group perX, perY, perZ;
-  Group c0, r0; ///< what a step of s takes of column s and row s
-
-  VertexMotion(const GroupFrame & frame, bool parallel)
-    : perX(1.0 / (parallel ? frame.halfWidth : frame.s0 * frame.halfWidth))
-    , perY(1.0 / (parallel ? frame.halfHeight : frame.s0 * frame.halfHeight))
-    , perZ(1.0 / frame.halfDepth)
-    , c0(parallel ? Group{} : frame.c0)
-    , r0(parallel ? Group{} : frame.r0)
-  {}
-};
-
-/** A displacement in the frame, (X, Y, z), as an affine function of (1, X, Y, z). */
-struct AffineField
-{
-  Group of[3][4];
-};
-
-inline void
-SetField(const GroupFrame & frame, const VertexMotion & motion, const Group (&vertex)[4][3], AffineField & field)
-{
-  field = {};
-  for (int j = 0; j < 4; ++j)
-  {
-    const Group moved[3] = { motion.perX * (vertex[j][1] - motion.c0 * vertex[j][0]),
-                             motion.perY * (vertex[j][2] - motion.r0 * vertex[j][0]),
-                             motion.perZ * vertex[j][0] };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (int k = 0; k < 4; ++k)
-      {
-        field.of[axis][k] += frame.mu[k][j] * moved[axis];
-      }
-    }
-  }
-}
-
-inline void
-SetFieldAdjoint(const GroupFrame &   frame,
-                const VertexMotion & motion,
-                const AffineField &  sums,
-                Group (&vertex)[4][3])
-{
-  for (int j = 0; j < 4; ++j)
-  {
-    Group moved[3] = {};
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (int k = 0; k < 4; ++k)
-      {
-        moved[axis] += frame.mu[k][j] * sums.of[axis][k];
-      }
-    }
-    vertex[j][1] = motion.perX * moved[0];
-    vertex[j][2] = motion.perY * moved[1];
-    vertex[j][0] = motion.perZ * moved[2] - motion.c0 * vertex[j][1] - motion.r0 * vertex[j][2];
-  }
-}
-
-/** The coefficients of the shape functions, see RayFunctions: levels 0..2 of the powers of eta, `stride` apart. */
-inline void
-SetShapeLevels(const AffineField & field, Group kappa, Group * levels, int stride)
-{
-  const Group(&x)[4] = field.of[0];
-  const Group(&y)[4] = field.of[1];
-  const Group(&z)[4] = field.of[2];
-  const Group none{};
-  const Group all[shapeLevels][shapeFunctions] = {
-    { x[0], x[1] - kappa * z[0], x[3], kappa * (x[1] - z[3]), -kappa * z[1], y[0], y[3], y[1], z[3] },
-    { x[2],
-      -kappa * z[2],
-      kappa * x[2],
-      -kappa * kappa * z[2],
-      none,
-      y[2] - kappa * z[0],
-      kappa * (y[2] - z[3]),
-      -kappa * z[1],
-      kappa * z[2] },
-    { none, none, none, none, none, -kappa * z[2], -kappa * kappa * z[2], none, none }
-  };
-  for (int level = 0; level < shapeLevels; ++level)
-  {
-    for (int i = 0; i < shapeFunctions; ++i)
-    {
-      levels[level * stride + i] = all[level][i];
-    }
-  }
-}
-
-inline void
-SetShapeLevelsAdjoint(const Group (&s)[shapeLevels][shapeFunctions], Group kappa, AffineField & field)
-{
-  field.of[0][0] = s[0][0];
-  field.of[0][1] = s[0][1] + kappa * s[0][3];
-  field.of[0][2] = s[1][0] + kappa * s[1][2];
-  field.of[0][3] = s[0][2];
-  field.of[1][0] = s[0][5];
-  field.of[1][1] = s[0][7];
-  field.of[1][2] = s[1][5] + kappa * s[1][6];
-  field.of[1][3] = s[0][6];
-  field.of[2][0] = -kappa * (s[0][1] + s[1][5]);
-  field.of[2][1] = -kappa * (s[0][4] + s[1][7]);
-  field.of[2][2] = -kappa * (s[1][1] + kappa * s[1][3] + s[2][5] + kappa * s[2][6] - s[1][8]);
-  field.of[2][3] = s[0][8] - kappa * (s[0][3] + s[1][6]);
-}
-
 /** Functions of eta with coefficients by level, evaluated all at once for a row. */
 template <typename TReal>
 class RowTable
@@ -418,7 +117,8 @@ struct DensityTable
   Set(const CellGroup & group, const GroupFrame & frame)
   {
     Monomials<N> monomials;
-    SetMonomials<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, frame, monomials);
+    SetMonomials<N>(
+      group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, frame, monomials);
     SetLevels<N>(monomials, frame.kappa, levels[0], count);
     if constexpr (N > 0)
     {
@@ -448,8 +148,8 @@ struct DensityTable
 template <typename TReal>
 struct RayStarts
 {
-  TReal depth[4], depthStep[4];    ///< of the planes, as in Frame
-  TReal perXi[4], perEta[4];       ///< change of these depths
+  TReal depth[4], depthStep[4]; ///< of the planes, as in Frame
+  TReal perXi[4], perEta[4];    ///< change of these depths
   TReal xi, xiStep;
   TReal kappa;
   int   fronts;
@@ -635,12 +335,8 @@ ForEachRay(const Frame & frame, const DensityTable<N> & density, int member, boo
       for (int i = 0; i < runs.count[j]; i += lanes)
       {
         RayFunctions<TReal, N> functions;
-        SetFunctions<TReal, N>(rays,
-                               table.Values(),
-                               index + static_cast<TReal>(i),
-                               static_cast<TReal>(runs.count[j]),
-                               withShape,
-                               functions);
+        SetFunctions<TReal, N>(
+          rays, table.Values(), index + static_cast<TReal>(i), static_cast<TReal>(runs.count[j]), withShape, functions);
         consumer.Take(block + j, runs.first[j] + i, functions);
       }
       consumer.EndRow(eta);
@@ -782,7 +478,7 @@ private:
   const Band &        m_Band;
   RowTable<TReal>     m_Density;
   RowTable<TReal>     m_Shape;
-  TReal               m_PerX, m_PerY; ///< see VertexMotion
+  TReal               m_PerX, m_PerY;   ///< see VertexMotion
   TReal               m_Offset, m_PerZ; ///< s - middle = offset + perZ z
 };
 

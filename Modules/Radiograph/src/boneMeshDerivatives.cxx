@@ -119,8 +119,8 @@ public:
     : m_Parallel(rays.IsParallel())
   {
     const auto at = [&](double column, double row) {
-      const Vector3   direction = rays.Direction(column, row);
-      const Vector3   x = rays.Origin(column, row) + middle * direction - centre;
+      const Vector3               direction = rays.Direction(column, row);
+      const Vector3               x = rays.Origin(column, row) + middle * direction - centre;
       Eigen::Matrix<double, 3, 2> moved;
       moved.col(0) = rays.ToPixel() * PoseVelocity(mode, x);
       moved.col(1) = rays.ToPixel() * (PoseVelocity(mode, x + direction) - PoseVelocity(mode, x));
@@ -305,8 +305,8 @@ DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & i
   std::vector<float>     sums(stride * (endRow - firstRow), 0.0f);
   const projection::Band band{ sums.data(), stride, firstRow, endRow, columns };
 
-  const std::size_t       shapeModes = m_Modes.shape.size(), densityModes = m_Density.size();
-  std::vector<Aligned>    scratch(
+  const std::size_t    shapeModes = m_Modes.shape.size(), densityModes = m_Density.size();
+  std::vector<Aligned> scratch(
     projection::DerivativeScratch(shapeModes, densityModes, m_Cells.maximumDegree) / sizeof(Aligned) + 1);
   projection::Derivatives task{};
   task.pose = m_Modes.pose;

@@ -17,7 +17,7 @@ FindObstacle(const std::vector<Vector3> &  points,
 {
   std::ostringstream text;
   const auto         finite = [](double value) { return std::isfinite(value); };
-  const bool restricted = options.minimumRegion > MeshRadiographOptions().minimumRegion ||
+  const bool         restricted = options.minimumRegion > MeshRadiographOptions().minimumRegion ||
                           options.maximumRegion < MeshRadiographOptions().maximumRegion;
   if (conversion != HUToAttenuation::None && conversion != HUToAttenuation::WaterScaled)
   {

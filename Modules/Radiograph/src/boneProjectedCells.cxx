@@ -37,8 +37,8 @@ ProjectedCells::Prepare(const ParallelFor & parallelFor)
   ForEachInBlocks(parallelFor, m_Points.size(), [&](std::size_t p) { m_Projected[p] = m_Frame.Project(m_Points[p]); });
   m_Rows.resize(m_Cells.tetrahedra.size());
   ForEachInBlocks(parallelFor, m_Rows.size(), [&](std::size_t t) { Locate(t); });
-  m_HasGeneral = std::any_of(
-    m_Rows.begin(), m_Rows.end(), [](const RowRange & range) { return range.path == Path::General; });
+  m_HasGeneral =
+    std::any_of(m_Rows.begin(), m_Rows.end(), [](const RowRange & range) { return range.path == Path::General; });
   FillBins();
 }
 

@@ -40,8 +40,8 @@ struct Band
   int            columns;
 };
 
-/** What is derived from a group's integrals beside these themselves, one plane each in the order below. Displacements of
- * vertices are in the coordinates (s, column s, row s), in a parallel beam (s, column, row). */
+/** What is derived from a group's integrals beside these themselves, one plane each in the order below. Displacements
+ * of vertices are in the coordinates (s, column s, row s), in a parallel beam (s, column, row). */
 struct Derivatives
 {
   bool                   pose;   ///< four planes: displacement by 1 along columns, along rows, and by s - middle along

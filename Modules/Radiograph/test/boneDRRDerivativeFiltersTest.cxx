@@ -114,8 +114,7 @@ TEST(DRRDerivativeImageFilter, WritesTheKernelsImagesInTheViewsPlace)
       body(i);
     }
   };
-  ProjectMeshDerivatives(
-    arrays.points, arrays, filter->GetGeometry()->GetView(), {}, modes, { loop, loop }, pointers);
+  ProjectMeshDerivatives(arrays.points, arrays, filter->GetGeometry()->GetView(), {}, modes, { loop, loop }, pointers);
   ASSERT_EQ(filter->GetNumberOfIndexedOutputs(), 9u);
   for (unsigned int i = 0; i < 9; ++i)
   {
