@@ -10,6 +10,12 @@
 
 namespace bone
 {
+namespace
+{
+// Swaps and collapses of the quality stage take away so much, whatever the bone.
+constexpr double ShareLeftByQuality = 0.95;
+} // namespace
+
 double
 EstimateSurface(const ContourStack & stack)
 {
@@ -94,7 +100,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
                  const ResolutionSearch &                                search,
                  const std::function<void(const Resolution &, IdType)> & tried)
 {
-  constexpr double          tolerance = 0.08;
+  constexpr double          tolerance = 0.06;
   constexpr int             maximumTrials = 6;
   std::exception_ptr        failure;
   std::optional<Resolution> best;
@@ -121,7 +127,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
     }
     const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
     tried(resolution, count);
-    const double ratio = static_cast<double>(count) / static_cast<double>(search.tetrahedra);
+    const double ratio = ShareLeftByQuality * static_cast<double>(count) / static_cast<double>(search.tetrahedra);
     if (!best || std::abs(std::log(ratio)) < bestError)
     {
       best = resolution;

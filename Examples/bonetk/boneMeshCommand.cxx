@@ -6,6 +6,7 @@
 
 #include "boneBuildPipeline.h"
 #include "boneContourIO.h"
+#include "boneCorrespondenceIO.h"
 #include "boneMeshIO.h"
 
 namespace bone
@@ -17,6 +18,8 @@ struct Options
   std::string contours;
   std::string ct;
   std::string metric{ "combined" };
+  std::string correspondence;
+  std::string correspondenceOutput;
   std::string output;
 };
 
@@ -24,6 +27,10 @@ void
 Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
+  if (!options.correspondenceOutput.empty())
+  {
+    VerifyExtension(options.correspondenceOutput, { ".json" });
+  }
   if (options.ct.empty() && options.metric == "density")
   {
     throw UsageError("--metric density needs --ct");
@@ -31,6 +38,10 @@ Run(const Options & options, Session & session)
   auto tiling = ContourTilingMeshSource<ContourStack, DensityMesh<double>>::New();
   tiling->SetInput(ReadContours(options.contours));
   tiling->SetMetric(options.metric);
+  if (!options.correspondence.empty())
+  {
+    tiling->SetCorrespondence(std::make_shared<ContourCorrespondence>(ReadCorrespondence(options.correspondence)));
+  }
   if (!options.ct.empty())
   {
     tiling->SetDensityImage(ReadCT(options.ct));
@@ -46,6 +57,10 @@ Run(const Options & options, Session & session)
     session.Warn(warning);
   }
   WriteDensityMesh(tiling->GetOutput(), options.output);
+  if (!options.correspondenceOutput.empty())
+  {
+    WriteCorrespondence(tiling->GetReport().correspondence, options.correspondenceOutput);
+  }
 }
 } // namespace
 
@@ -59,6 +74,12 @@ AddMeshCommand(CLI::App & app, Action & action)
   command->add_option("--metric", options->metric, "What the tiling minimises (volume: maximises); default combined")
     ->check(CLI::IsMember({ "span", "area", "volume", "density", "combined" }).description(""))
     ->type_name("span|area|volume|density|combined");
+  command->add_option("--correspondence",
+                      options->correspondence,
+                      "Which contours of neighbouring slices belong together (.json), where they do not as found");
+  command->add_option("--write-correspondence",
+                      options->correspondenceOutput,
+                      "Where to write which contours were taken to belong together (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }

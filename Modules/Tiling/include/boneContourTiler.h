@@ -19,6 +19,9 @@ struct TilingParameters
 {
   /** Cost of the knit's steps; span length where none is set. */
   std::shared_ptr<const TilingMetric> metric;
+  /** Correspondence of pieces in some slabs in place of what overlap and distance say; found for all where none is set.
+   */
+  std::shared_ptr<const ContourCorrespondence> correspondence;
   /** Runs body(0) to body(count - 1), in any order and at once if it likes; one after the other where none is set. The
    * result does not depend on it. */
   std::function<void(std::size_t count, const std::function<void(std::size_t)> & body)> parallel;
@@ -41,7 +44,8 @@ struct TilingParameters
  *
  * A hole that is bone above and below would be a void; it is closed and counted. Orientation is decided by exact
  * predicates and the result is validated: the function returns a valid mesh or throws std::runtime_error naming the
- * slice (pieces that belong together but lie beside each other).
+ * slice (pieces that belong together but lie beside each other; a correspondence that names a contour which is not
+ * there).
  *
  * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
  * \ref MeshArrays. Deterministic. */

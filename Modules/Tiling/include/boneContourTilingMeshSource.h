@@ -68,6 +68,11 @@ public:
   void
   SetMetricObject(std::shared_ptr<const TilingMetric> metric);
 
+  /** Correspondence of pieces in some slabs; null (default) leaves all to overlap and distance. What was used is in the
+   * report. */
+  void
+  SetCorrespondence(std::shared_ptr<const ContourCorrespondence> correspondence);
+
   TMesh *
   GetOutput();
   const TMesh *
@@ -103,9 +108,10 @@ private:
   DensitySampler
   MakeSampler() const;
 
-  std::string                         m_Metric{ "combined" };
-  std::shared_ptr<const TilingMetric> m_MetricObject;
-  TilingReport                        m_Report;
+  std::string                                  m_Metric{ "combined" };
+  std::shared_ptr<const TilingMetric>          m_MetricObject;
+  std::shared_ptr<const ContourCorrespondence> m_Correspondence;
+  TilingReport                                 m_Report;
 };
 } // namespace bone
 

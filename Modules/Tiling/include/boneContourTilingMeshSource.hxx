@@ -68,6 +68,18 @@ ContourTilingMeshSource<TContourStack, TMesh>::SetMetricObject(std::shared_ptr<c
 }
 
 template <typename TContourStack, typename TMesh>
+void
+ContourTilingMeshSource<TContourStack, TMesh>::SetCorrespondence(
+  std::shared_ptr<const ContourCorrespondence> correspondence)
+{
+  if (correspondence != m_Correspondence)
+  {
+    m_Correspondence = std::move(correspondence);
+    this->Modified();
+  }
+}
+
+template <typename TContourStack, typename TMesh>
 TMesh *
 ContourTilingMeshSource<TContourStack, TMesh>::GetOutput()
 {
@@ -141,6 +153,7 @@ ContourTilingMeshSource<TContourStack, TMesh>::GenerateData()
 {
   TilingParameters parameters;
   parameters.metric = m_MetricObject ? m_MetricObject : MakeTilingMetric(m_Metric, this->MakeSampler());
+  parameters.correspondence = m_Correspondence;
   parameters.progress = [this](double share) {
     this->UpdateProgress(static_cast<float>(share));
     if (this->GetAbortGenerateData())
@@ -174,6 +187,7 @@ ContourTilingMeshSource<TContourStack, TMesh>::PrintSelf(std::ostream & os, itk:
 {
   Superclass::PrintSelf(os, indent);
   os << indent << "Metric: " << (m_MetricObject ? "object" : m_Metric) << '\n';
+  os << indent << "Correspondence: " << (m_Correspondence ? "given" : "found") << '\n';
   os << indent << "Slabs: " << m_Report.slabs << '\n';
 }
 } // namespace bone

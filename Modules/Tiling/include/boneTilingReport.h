@@ -4,6 +4,8 @@
 #ifndef boneTilingReport_h
 #define boneTilingReport_h
 
+#include "boneContourCorrespondence.h"
+
 #include <string>
 #include <vector>
 
@@ -27,6 +29,9 @@ struct TilingReport
   int otherAxes{ 0 };        ///< groups that needed another medial axis above
   int filledSlabs{ 0 };      ///< spaces between two slices filled by overlaying the triangulations of the slices
   int filledEnds{ 0 };       ///< ends closed in that way
+
+  /** The pieces' correspondence in all slabs, as it was given or found. */
+  ContourCorrespondence correspondence;
 
   /** The places behind the counts, in words ("slice 12: ..."). */
   std::vector<std::string> notes;

@@ -177,6 +177,44 @@ TEST(ContourTilingMeshSource, JoinsSeveralPiecesWithSeveral)
   EXPECT_NEAR(Volume(mesh, 0) / (3 * (lower + upper) * Pi * PolygonShare(24)), 1.0, 0.02);
 }
 
+TEST(ContourTilingMeshSource, ACorrespondenceOverridesOverlap)
+{
+  // Two columns that overlap each other's next slice: joined by overlap, apart by what is given.
+  const std::vector<Loop>        below = { { { -6, 0 }, 7, 6, 0, 1 }, { { 9, 0 }, 6, 6, 0, 1 } };
+  const std::vector<Loop>        above = { { { -11, 0 }, 6, 6, 0, 1 }, { { 4, 0 }, 8, 6, 0, 1 } };
+  std::vector<std::vector<Loop>> slices(2, below);
+  slices.insert(slices.end(), 2, above);
+  auto source = Source::New();
+  source->SetInput(MakeStack(slices, 2.0));
+  source->Update();
+  EXPECT_EQ(bone::ValidateMesh(source->GetOutput()->GetArrays()).components, 1);
+  const auto found = source->GetReport().correspondence;
+  ASSERT_EQ(found.slabs.size(), 3U);
+  EXPECT_EQ(found.slabs.at(1).size(), 1U);
+  EXPECT_EQ(found.slabs.at(0).size(), 2U);
+
+  auto given = std::make_shared<bone::ContourCorrespondence>();
+  given->slabs[1] = { { { 0 }, { 0 } }, { { 1 }, { 1 } } };
+  source->SetCorrespondence(given);
+  source->Update();
+  const auto validation = bone::ValidateMesh(source->GetOutput()->GetArrays());
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 2);
+  EXPECT_EQ(source->GetReport().correspondence.slabs.at(1), given->slabs.at(1));
+  EXPECT_EQ(source->GetReport().correspondence.slabs.at(0), found.slabs.at(0));
+
+  // What was found, given, changes nothing.
+  source->SetCorrespondence(std::make_shared<bone::ContourCorrespondence>(found));
+  source->Update();
+  EXPECT_EQ(bone::ValidateMesh(source->GetOutput()->GetArrays()).components, 1);
+
+  auto wrong = std::make_shared<bone::ContourCorrespondence>();
+  wrong->slabs[1] = { { { 7 }, { 0 } } };
+  source->SetCorrespondence(wrong);
+  EXPECT_THAT([&] { source->Update(); },
+              testing::ThrowsMessage<itk::ExceptionObject>(testing::HasSubstr("slice 1, contour 7")));
+}
+
 TEST(ContourTilingMeshSource, ASocketEndsInADome)
 {
   // Solid below, a hole above: its floor is neither on the lower slice nor on the upper one.
