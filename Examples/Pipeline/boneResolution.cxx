@@ -10,12 +10,6 @@
 
 namespace bone
 {
-namespace
-{
-// Swaps and collapses of the quality stage take away so much, whatever the bone.
-constexpr double ShareLeftByQuality = 0.95;
-} // namespace
-
 double
 EstimateSurface(const ContourStack & stack)
 {
@@ -62,7 +56,7 @@ namespace
 Resolution
 NextResolution(const Resolution & last, double ratio, const ResolutionSearch & search)
 {
-  constexpr double far = 0.3;
+  constexpr double far = 0.12;
   Resolution       next = last;
   double           remaining = ratio;
   if (!search.sliceStepFixed && std::abs(std::log(ratio)) > far)
@@ -92,13 +86,12 @@ OtherResolution(const Resolution & last, int trial, const ResolutionSearch & sea
   }
   return next;
 }
-} // namespace
-
+/** Finds a resolution at which the tiling has the number of tetrahedra of the search. */
 Resolution
-AdjustResolution(BuildPipeline &                                         pipeline,
-                 const Resolution &                                      start,
-                 const ResolutionSearch &                                search,
-                 const std::function<void(const Resolution &, IdType)> & tried)
+AdjustTiling(BuildPipeline &                                         pipeline,
+             const Resolution &                                      start,
+             const ResolutionSearch &                                search,
+             const std::function<void(const Resolution &, IdType)> & tried)
 {
   constexpr double          tolerance = 0.06;
   constexpr int             maximumTrials = 6;
@@ -127,7 +120,7 @@ AdjustResolution(BuildPipeline &                                         pipelin
     }
     const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
     tried(resolution, count);
-    const double ratio = ShareLeftByQuality * static_cast<double>(count) / static_cast<double>(search.tetrahedra);
+    const double ratio = static_cast<double>(count) / static_cast<double>(search.tetrahedra);
     if (!best || std::abs(std::log(ratio)) < bestError)
     {
       best = resolution;
@@ -146,5 +139,33 @@ AdjustResolution(BuildPipeline &                                         pipelin
   SetResolution(pipeline, *best, search);
   pipeline.GetTiling()->Update();
   return *best;
+}
+} // namespace
+
+Resolution
+AdjustResolution(BuildPipeline &                                         pipeline,
+                 const Resolution &                                      start,
+                 const ResolutionSearch &                                search,
+                 const std::function<void(const Resolution &, IdType)> & tried)
+{
+  constexpr double tolerance = 0.08;
+  constexpr int    maximumTrials = 3;
+  ResolutionSearch tiling = search;
+  Resolution       resolution = start;
+  double           left = 0.95; // of the tiling's tetrahedra, by the quality stage
+  for (int trial = 0; trial < maximumTrials; ++trial)
+  {
+    tiling.tetrahedra = static_cast<IdType>(std::lround(static_cast<double>(search.tetrahedra) / left));
+    resolution = AdjustTiling(pipeline, resolution, tiling, tried);
+    pipeline.GetQuality()->Update();
+    const auto tiled = static_cast<double>(pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra());
+    const auto count = static_cast<double>(pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra());
+    if (std::abs(count / static_cast<double>(search.tetrahedra) - 1.0) <= tolerance)
+    {
+      break;
+    }
+    left = count / tiled;
+  }
+  return resolution;
 }
 } // namespace bone

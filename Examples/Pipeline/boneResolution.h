@@ -41,10 +41,11 @@ struct ResolutionSearch
 void
 SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search);
 
-/** Sets slice step and contour spacing of the pipeline, beginning with `start`, until the mesh, after the twentieth
- * or so that the quality stage takes away, has the number of tetrahedra within 6 %, in at most six tilings, and leaves the best ones set and the tiling up to date. Far from the
- * number both are changed, near it the spacing alone, which leaves the contours as they are. A resolution at which the
- * tiling fails is passed over; the last failure is thrown where all fail. `tried` is told of each. */
+/** Sets slice step and contour spacing of the pipeline, beginning with `start`, until the mesh has the number of
+ * tetrahedra within 8 % after the quality stage, which takes some away: in at most three rounds of at most six tilings.
+ * Leaves the best ones set and the quality stage up to date. Far from the number both are changed, near it the spacing
+ * alone, which leaves the contours as they are. A resolution at which the tiling fails is passed over; the last failure
+ * is thrown where all fail. `tried` is told of each tiling. */
 Resolution
 AdjustResolution(BuildPipeline &                                         pipeline,
                  const Resolution &                                      start,
