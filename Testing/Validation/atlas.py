@@ -114,18 +114,26 @@ def registration_section(scratch):
 def population_section(scratch):
     rows = read(scratch, "population")
     out = []
-    factors = [r for r in rows if "factor" in r]
-    if factors:
-        subjects = [r for r in rows if "phantom" in r]
-        last = rows[-1]
+    subjects = [r for r in rows if "phantom" in r]
+    fitted = {r["fitted"]: r for r in rows if "correlation" in r}
+    if fitted:
+        factors = [r for r in rows if "factor" in r]
+        names = list(dict.fromkeys(r["factor"] for r in factors))
+        explained = {(r["factor"], r["fitted"]): f"{r['explained']:.3f}" for r in factors}
+        means = {k: sum(r[k] for r in subjects) / len(subjects) for k in ("surface", "back", "volume")}
         out += ["\n## A population of known factors\n",
                 f"{len(subjects)} phantom hemipelves, three factors of shape and two of density, orthogonal over the subjects; each",
-                "registered from its surface, its density fitted in every cell. Share of each factor's variance that the first",
-                "three modes of shape, or two of density, explain:\n", "| factor | R² |", "|---|---|"]
-        out += [f"| {r['factor']} | {r['explained']:.3f} |" for r in factors]
-        out.append(f"\nLargest correlation of these shape and density scores: {last['correlation']:.3f}. Mass of the mean model: "
-                   f"{100 * (last['mass'] / last['massOfSubjects'] - 1):+.2f} % to the subjects' mean, "
-                   f"{100 * (last['mass'] / last['massOfPhantom'] - 1):+.2f} % to the phantom of mean factors.")
+                "registered from its surface, its density fitted in every cell: as an image shows it, with soft tissue where a facet",
+                "lies outside the bone; of the bone alone, whose cortex goes on there; of the cell's own layer, as if the layers'",
+                "surfaces were matched too. Share of each factor's variance that the first three modes of shape, or two of density,",
+                "explain:\n", "| factor | image | bone | layer |", "|---|---|---|---|"]
+        out += ["| " + " | ".join([name] + [explained[name, k] for k in fitted]) + " |" for name in names]
+        out.append("| largest correlation of these shape and density scores | "
+                   + " | ".join(f"{r['correlation']:.3f}" for r in fitted.values()) + " |")
+        out.append("| mass of the mean model to the phantom of mean factors, % | "
+                   + " | ".join(f"{100 * (r['mass'] / r['massOfPhantom'] - 1):+.2f}" for r in fitted.values()) + " |")
+        out.append(f"\nMeans over the subjects: surface {means['surface']:.3f} mm, back {means['back']:.3f} mm, volume "
+                   f"{100 * (means['volume'] - 1):+.2f} %.")
     return out
 
 

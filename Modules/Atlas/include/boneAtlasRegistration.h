@@ -35,6 +35,8 @@ struct RegistrationParameters
   DeformationMethod          method{ DeformationMethod::AdaptiveFocus };
   AdaptiveFocusParameters    focus;
   NonRigidICPParameters      nonRigid;
+  int                        facetPasses{ 2 };  ///< of FitFacets after the deformation; 0: vertices lie on the subject
+  double                     facetBound{ 0.5 }; ///< of these passes, mm
   InteriorRule               interior{ InteriorRule::Harmonic };
   UntanglingParameters       untangling;
 };

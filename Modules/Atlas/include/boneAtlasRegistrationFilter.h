@@ -21,7 +21,7 @@ namespace bone
  *
  * 1. Alignment by principal axes and iterative closest points, affine by default (\ref AlignSurfaces).
  * 2. The exterior surface is deformed: adaptive focus (default, \ref DeformAdaptiveFocus) or non-rigid ICP
- *    (\ref DeformNonRigidICP).
+ *    (\ref DeformNonRigidICP), then its facets are laid on the subject (\ref FitFacets).
  * 3. Interior points follow: a harmonic displacement (default) or the paper's eigen-frames (\ref InteriorDeformation).
  * 4. Inverted tetrahedra are repaired within bounds (\ref UntangleMesh). If some are left, the filter throws and says
  *    how many: no inverted tetrahedron leaves it.

@@ -114,6 +114,7 @@ StandardModel::Register(const TriangleSurface &             subject,
   moved.points = parameters.method == DeformationMethod::AdaptiveFocus
                    ? DeformAdaptiveFocus(moved, *target, parameters.focus)
                    : DeformNonRigidICP(moved, *target, parameters.nonRigid);
+  FitFacets(moved, *target, parameters.facetPasses, parameters.facetBound);
   progress(0.9);
   std::vector<Vector3> points = m_Interior->Deform(parameters.interior, aligned.map, moved.points);
   report.untangling = UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling);

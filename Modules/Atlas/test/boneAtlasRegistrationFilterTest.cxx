@@ -267,3 +267,37 @@ TEST(AttributeVectors, AreUnchangedByAffineMaps)
   const Eigen::MatrixXd difference = AttributeVectors(surface.points, rings, 4) - AttributeVectors(moved, rings, 4);
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9);
 }
+
+TEST(FitFacets, GivesACoarseBallTheVolumeOfAFineOne)
+{
+  std::vector<IdType>   id;
+  const TriangleSurface fine = ExteriorSurface(MakeBall(8, { 1, 1 }, 20.0, 0.0, 1), id);
+  TriangleSurface       coarse = ExteriorSurface(MakeBall(2, { 1, 1 }, 20.0, 0.0, 1), id);
+  const DirectedSurface target(fine);
+  const double          volume = EnclosedVolume(fine);
+  const TriangleSurface before = coarse;
+  FitFacets(coarse, target, 0, 5.0);
+  EXPECT_EQ(coarse.points, before.points);
+  const double lack = volume - EnclosedVolume(coarse);
+  ASSERT_GT(lack, 0.05 * volume);
+  FitFacets(coarse, target, 2, 5.0);
+  EXPECT_LT(std::abs(volume - EnclosedVolume(coarse)), 0.1 * lack);
+
+  TriangleSurface bounded = before;
+  FitFacets(bounded, target, 2, 0.25);
+  for (std::size_t v = 0; v < bounded.points.size(); ++v)
+  {
+    EXPECT_LE((bounded.points[v] - before.points[v]).norm(), 0.25 + 1e-12);
+  }
+}
+
+TEST(FitFacets, LeavesASurfaceThatLiesOnTheTarget)
+{
+  std::vector<IdType>   id;
+  TriangleSurface       surface = ExteriorSurface(Standard(), id);
+  const auto            points = surface.points;
+  const DirectedSurface target(surface);
+  FitFacets(surface, target, 3, 0.5);
+  EXPECT_LT(MeanDistance(surface.points, points),
+            0.005); // none but at the sharp edges of the ends, where normals differ
+}
