@@ -169,11 +169,11 @@ Registration(const std::vector<std::string> & files, const RegistrationParameter
   }
 }
 
-/** The periosteal surface of a phantom, from its function on a grid of 1.5 mm. */
+/** The periosteal surface of a phantom, from its function on a grid of 1 mm. */
 TriangleSurface
 SurfaceOf(const PhantomModel & phantom)
 {
-  constexpr double     Spacing = 1.5;
+  constexpr double     Spacing = 1.0;
   vtkNew<vtkImageData> grid;
   double               origin[3];
   int                  size[3];
