@@ -2,7 +2,8 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 // boneRadiographValidation CT GEOMETRY.json MODEL.vtu...: times radiographs of the models, of the CT by Joseph's method
-// and by ITK's RayCastInterpolateImageFunction, and the first model's derivatives, all with two threads. Prints a
+// and by ITK's RayCastInterpolateImageFunction, the first model's derivatives, and the first model as "close" with a
+// detector a fifth as wide, which the bone fills; all with two threads. Prints a
 // "name wall_ms processor_ms" a line, least of the repetitions, then for each model the cells on its rays.
 #include <itkIdentityTransform.h>
 #include <itkRayCastInterpolateImageFunction.h> // before other versions of Eigen than ITK's
@@ -61,12 +62,23 @@ Pixels(const XRayGeometry::View & view)
   return static_cast<std::size_t>(view.size[0]) * view.size[1];
 }
 
+/** The same detector, all of it within the bone's shadow: pixels `share` as far apart about its middle. */
+XRayGeometry::View
+CloseView(XRayGeometry::View view, double share)
+{
+  const Vector2 half =
+    0.5 * (1.0 - share) * Vector2((view.size[0] - 1) * view.spacing.x(), (view.size[1] - 1) * view.spacing.y());
+  view.detectorOrigin += half.x() * view.detectorU + half.y() * view.detectorV;
+  view.spacing *= share;
+  return view;
+}
+
 void
-TimeModel(const std::string & path, const XRayGeometry::View & view)
+TimeModel(const std::string & name, const std::string & path, const XRayGeometry::View & view)
 {
   const MeshArrays   mesh = ReadDensityMesh(path)->GetArrays();
   std::vector<float> image(Pixels(view));
-  Time("model " + path, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, loops, image.data()); });
+  Time("model " + name, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, loops, image.data()); });
   std::vector<std::int32_t> passed(image.size());
   WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());
   double intervals = 0;
@@ -74,7 +86,7 @@ TimeModel(const std::string & path, const XRayGeometry::View & view)
   {
     intervals += cells;
   }
-  std::cout << "cells " << path << ' ' << mesh.tetrahedra.size() << ' ' << intervals << '\n';
+  std::cout << "cells " << name << ' ' << mesh.tetrahedra.size() << ' ' << intervals << '\n';
 }
 
 void
@@ -162,8 +174,9 @@ main(int argc, char * argv[])
     const auto geometry = ReadGeometry(argv[2]).front();
     for (int i = 3; i < argc; ++i)
     {
-      TimeModel(argv[i], geometry->GetView());
+      TimeModel(argv[i], argv[i], geometry->GetView());
     }
+    TimeModel("close", argv[3], CloseView(geometry->GetView(), 0.2));
     TimeDerivatives(argv[3], geometry->GetView());
     auto joseph = VoxelDRRImageFilter<CTImage, CTImage>::New();
     joseph->SetInput(ct);
