@@ -1,0 +1,257 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+// boneSimplificationValidation levels L1.vtu PREFIX COUNT...: a hierarchy of a mesh, audited level by level; JSON.
+// boneSimplificationValidation time L1.vtu REPEAT COUNT...: seconds of the simplification alone, the least of REPEAT.
+#include "boneHierarchyIO.h"
+#include "boneMeshIO.h"
+#include "boneMeshValidator.h"
+#include "boneQualityMeasures.h"
+#include "boneSurfaceAudit.h"
+#include "boneSurfaceGrid.h"
+#include "boneTetraCollapseFilter.h"
+#include "boneTriangleTree.h"
+
+#include <itkMultiThreaderBase.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <iostream>
+#include <set>
+
+namespace
+{
+using namespace bone;
+using nlohmann::json;
+using MeshType = DensityMesh<double>;
+using FilterType = TetraCollapseFilter<MeshType>;
+using Faces = std::vector<std::array<IdType, 3>>;
+
+constexpr double Degree = 57.29577951308232;
+
+FilterType::Pointer
+MakeFilter(const MeshType * mesh, const std::vector<IdType> & counts, unsigned threads)
+{
+  auto filter = FilterType::New();
+  filter->SetInput(mesh);
+  filter->SetLevels(counts);
+  filter->SetNumberOfWorkUnits(threads);
+  filter->GetMultiThreader()->SetMaximumNumberOfThreads(threads);
+  return filter;
+}
+
+/** Seconds of wall clock and of all processors. */
+std::pair<double, double>
+TimeOf(FilterType * filter)
+{
+  const auto         start = std::chrono::steady_clock::now();
+  const std::clock_t clock = std::clock();
+  filter->Update();
+  return { std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+           static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC };
+}
+
+template <typename T>
+bool
+SameBytes(const std::vector<T> & a, const std::vector<T> & b)
+{
+  return a.size() == b.size() &&
+         std::equal(reinterpret_cast<const char *>(a.data()),
+                    reinterpret_cast<const char *>(a.data() + a.size()),
+                    reinterpret_cast<const char *>(b.data()));
+}
+
+bool
+IsSame(const FilterType * one, const FilterType * other)
+{
+  bool same = true;
+  for (std::size_t i = 0; i < one->GetOutput()->GetNumberOfLevels(); ++i)
+  {
+    const auto a = one->GetOutput()->GetMesh(i)->GetArrays(), b = other->GetOutput()->GetMesh(i)->GetArrays();
+    same = same && SameBytes(a.points, b.points) && SameBytes(a.tetrahedra, b.tetrahedra) &&
+           SameBytes(a.neighbors, b.neighbors) && SameBytes(a.region, b.region) && SameBytes(a.layer, b.layer) &&
+           SameBytes(a.degree, b.degree) && SameBytes(a.coefficients, b.coefficients) &&
+           one->GetOutput()->GetLevels()[i].parentPoint == other->GetOutput()->GetLevels()[i].parentPoint;
+  }
+  return same;
+}
+
+TriangleTree
+TreeOf(const MeshArrays & mesh, const Faces & faces)
+{
+  std::vector<TriangleTree::Triangle> triangles;
+  for (const auto & f : faces)
+  {
+    triangles.push_back({ mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]] });
+  }
+  return TriangleTree(triangles);
+}
+
+/** Mean over the area, and largest, of the distance from faces to a tree, at points some 0.7 mm apart. */
+json
+Distance(const MeshArrays & mesh, const Faces & faces, const TriangleTree & tree)
+{
+  double sum = 0.0, area = 0.0, largest = 0.0;
+  for (const auto & f : faces)
+  {
+    const Vector3 &a = mesh.points[f[0]], &b = mesh.points[f[1]], &c = mesh.points[f[2]];
+    const double   longest = std::sqrt(std::max({ (b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm() }));
+    const int      n = std::max(1, static_cast<int>(std::ceil(longest / 0.7)));
+    const double   share = (b - a).cross(c - a).norm() / (n * n);
+    for (int i = 0; i < n; ++i)
+    {
+      for (int j = 0; j < 2 * (n - i) - 1; ++j)
+      {
+        // Centroids of the n^2 parts of the triangle: upright ones at even j, others at odd j.
+        const double  u = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n, v = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n;
+        const double  distance = std::sqrt(tree.FindNearest(a + u * (b - a) + v * (c - a)).squaredDistance);
+        sum += share * distance;
+        area += share;
+        largest = std::max(largest, distance);
+      }
+    }
+  }
+  return { { "mean", area > 0 ? sum / area : 0.0 }, { "largest", largest } };
+}
+
+double
+RegionVolume(const MeshArrays & mesh, int region)
+{
+  double sum = 0.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 & v = mesh.tetrahedra[t];
+    sum += mesh.region[t] == region
+             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
+             : 0.0;
+  }
+  return sum;
+}
+
+/** Smallest dihedral angle of the cells of the cortical region, or of the others, degrees. */
+double
+LeastAngle(const MeshArrays & mesh, bool cortical)
+{
+  double worst = -1.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 & v = mesh.tetrahedra[t];
+    if ((mesh.region[t] == Cortical) == cortical)
+    {
+      const auto & p = mesh.points;
+      worst = std::max(worst, LargestDihedralCosine(p[v[0]], p[v[1]], p[v[2]], p[v[3]]));
+    }
+  }
+  return std::acos(std::min(1.0, worst)) * Degree;
+}
+
+json
+Audit(const MeshArrays & first, const MeshArrays & level)
+{
+  const auto          validation = ValidateMesh(level);
+  const std::set<int> regions(first.region.begin(), first.region.end());
+  json                out;
+  out["valid"] = validation.IsValid();
+  out["summary"] = validation.Summary();
+  out["angleCortical"] = LeastAngle(level, true);
+  out["angleOther"] = LeastAngle(level, false);
+  for (int region : regions)
+  {
+    const Faces faces = BoundaryFaces(level, region), before = BoundaryFaces(first, region);
+    json        found;
+    found["region"] = region;
+    found["volume"] = RegionVolume(first, region);
+    found["volumeChange"] = RegionVolume(level, region) / RegionVolume(first, region) - 1.0;
+    found["faces"] = faces.size();
+    found["crossing"] = FindCrossingTriangles(faces, level.points).size();
+    found["pinched"] = PinchedPoints(level, region);
+    found["to"] = Distance(level, faces, TreeOf(first, before));
+    found["from"] = Distance(first, before, TreeOf(level, faces));
+    out["regions"].push_back(found);
+  }
+  return out;
+}
+
+int
+Levels(const std::string & file, const std::string & prefix, const std::vector<IdType> & counts)
+{
+  const auto mesh = ReadDensityMesh(file);
+  const auto filter = MakeFilter(mesh, counts, 2);
+  const auto seconds = TimeOf(filter);
+  const auto again = MakeFilter(mesh, counts, 2), single = MakeFilter(mesh, counts, 1);
+  again->Update();
+  single->Update();
+  WriteHierarchy(filter->GetOutput(), prefix);
+  json out;
+  out["seconds"] = seconds.first;
+  out["processorSeconds"] = seconds.second;
+  out["same"] = IsSame(filter, again) && IsSame(filter, single);
+  const auto first = mesh->GetArrays();
+  for (std::size_t i = 0; i < filter->GetOutput()->GetNumberOfLevels(); ++i)
+  {
+    const auto & level = filter->GetOutput()->GetLevels()[i];
+    json         found = Audit(first, level.mesh->GetArrays());
+    found["tetrahedra"] = level.mesh->GetNumberOfTetrahedra();
+    found["points"] = level.mesh->GetNumberOfPoints();
+    found["asked"] = i == 0 ? level.mesh->GetNumberOfTetrahedra() : counts[i - 1];
+    found["stopReason"] = level.stopReason;
+    found["densityError"] = level.densityError;
+    found["surfaceError"] = level.surfaceError;
+    for (int reason = 1; i > 0 && reason < MeshOperationCount; ++reason)
+    {
+      found["refused"][MeshOperationName(static_cast<MeshOperation>(reason))] = filter->GetReport()[i - 1].refused[reason];
+    }
+    out["levels"].push_back(found);
+  }
+  std::cout << out.dump(1) << '\n';
+  return 0;
+}
+
+int
+Time(const std::string & file, int repeat, const std::vector<IdType> & counts)
+{
+  const auto mesh = ReadDensityMesh(file);
+  double     wall = 1e30, processor = 1e30;
+  for (int k = 0; k < repeat; ++k)
+  {
+    const auto seconds = TimeOf(MakeFilter(mesh, counts, 2));
+    wall = std::min(wall, seconds.first);
+    processor = std::min(processor, seconds.second);
+  }
+  std::cout << json{ { "tetrahedra", mesh->GetNumberOfTetrahedra() }, { "seconds", wall }, { "processorSeconds", processor } }
+            << '\n';
+  return 0;
+}
+} // namespace
+
+int
+main(int argc, char * argv[])
+{
+  const std::string         job = argc > 1 ? argv[1] : "";
+  std::vector<IdType>       counts;
+  for (int i = 4; i < argc; ++i)
+  {
+    counts.push_back(std::stoi(argv[i]));
+  }
+  try
+  {
+    if (job == "levels" && argc > 4)
+    {
+      return Levels(argv[2], argv[3], counts);
+    }
+    if (job == "time" && argc > 4)
+    {
+      return Time(argv[2], std::stoi(argv[3]), counts);
+    }
+  }
+  catch (const std::exception & error)
+  {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX COUNT... | time L1.vtu REPEAT COUNT...\n";
+  return 2;
+}
