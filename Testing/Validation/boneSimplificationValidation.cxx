@@ -2,11 +2,15 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 // boneSimplificationValidation levels L1.vtu PREFIX COUNT...: a hierarchy of a mesh, audited level by level; JSON.
+// boneSimplificationValidation property FIRST LAST: random meshes and bounds by seed; says what was wrong.
 // boneSimplificationValidation time L1.vtu REPEAT COUNT...: seconds of the simplification alone, the least of REPEAT.
+#include "boneCollapseProperty.h"
+#include "boneContourTiler.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"
+#include "boneRandomStack.h"
 #include "boneSurfaceAudit.h"
 #include "boneSurfaceGrid.h"
 #include "boneTetraCollapseFilter.h"
@@ -225,6 +229,44 @@ Time(const std::string & file, int repeat, const std::vector<IdType> & counts)
             << '\n';
   return 0;
 }
+/** Random bodies, every other one tiled from random contours, each under random bounds. */
+int
+Property(unsigned first, unsigned last)
+{
+  int    failed = 0;
+  double ratio = 0.0;
+  for (unsigned seed = first; seed <= last; ++seed)
+  {
+    std::string failures;
+    try
+    {
+      MeshArrays body;
+      if (seed % 2 == 0)
+      {
+        TilingReport report;
+        body = TileContours(*RandomStack(seed).Make(), {}, report);
+      }
+      else
+      {
+        body = test::RandomBody(seed);
+      }
+      test::CollapseProperty property(body, seed);
+      failures = property.Check();
+      ratio = std::max(ratio, property.DensityRatio());
+    }
+    catch (const std::exception & error)
+    {
+      failures = error.what();
+    }
+    if (!failures.empty())
+    {
+      ++failed;
+      std::cout << "seed " << seed << ": " << failures << std::endl;
+    }
+  }
+  std::cout << json{ { "meshes", last - first + 1 }, { "failed", failed }, { "densityRatio", ratio } } << '\n';
+  return failed > 0 ? 1 : 0;
+}
 } // namespace
 
 int
@@ -242,6 +284,10 @@ main(int argc, char * argv[])
     {
       return Levels(argv[2], argv[3], counts);
     }
+    if (job == "property" && argc == 4)
+    {
+      return Property(static_cast<unsigned>(std::stoul(argv[2])), static_cast<unsigned>(std::stoul(argv[3])));
+    }
     if (job == "time" && argc > 4)
     {
       return Time(argv[2], std::stoi(argv[3]), counts);
@@ -252,6 +298,7 @@ main(int argc, char * argv[])
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX COUNT... | time L1.vtu REPEAT COUNT...\n";
+  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX COUNT... | time L1.vtu REPEAT COUNT... | "
+               "property FIRST LAST\n";
   return 2;
 }

@@ -64,12 +64,20 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b);
 double
 CellCosine(const TetraComplex & complex, IdType t);
 
+/** What flips may do to the number of cells. */
+enum class FlipCellCount : int
+{
+  Any,
+  NotMore,
+  Same
+};
+
 /** Parameters of \ref ImproveByFlips. */
 struct FlipParameters
 {
-  double targetAngle{ 0.35 };    ///< rad; cells whose smallest dihedral angle is below are looked at
-  int    maximumPasses{ 6 };     ///< each pass goes over all such cells
-  bool   keepCellCount{ false }; ///< no flip that makes more cells
+  double        targetAngle{ 0.35 }; ///< rad; cells whose smallest dihedral angle is below are looked at
+  int           maximumPasses{ 6 };  ///< each pass goes over all such cells
+  FlipCellCount cellCount{ FlipCellCount::Any };
 };
 
 struct FlipReport

@@ -262,7 +262,8 @@ public:
     for (const auto & edge : TetraEdges)
     {
       const IdType a = cell[edge[0]], b = cell[edge[1]];
-      if (m_Parameters.keepCellCount && RingLength(a, b) > 4)
+      const std::size_t ring = m_Parameters.cellCount == FlipCellCount::Any ? 4 : RingLength(a, b);
+      if (ring > 4 || (ring < 4 && m_Parameters.cellCount == FlipCellCount::Same))
       {
         continue;
       }
@@ -271,7 +272,7 @@ public:
         return true;
       }
     }
-    for (int i = 0; i < 4 && !m_Parameters.keepCellCount; ++i)
+    for (int i = 0; i < 4 && m_Parameters.cellCount == FlipCellCount::Any; ++i)
     {
       if (Note(RemoveFace(m_Complex, t, i)))
       {

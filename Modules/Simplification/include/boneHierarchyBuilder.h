@@ -17,6 +17,8 @@ struct LevelRequest
 {
   IdType tetrahedra{ 0 };           ///< no more than these; 0: as few as the bounds allow
   double maximumDensityError{ -1 }; ///< root mean square, density units; negative: none
+  double maximumSurfaceDistance{ std::numeric_limits<double>::infinity() }; ///< mm, both ways, to the finest level
+  int    maximumDegree{ -1 }; ///< to which degrees may be raised to keep to the density error; negative: not at all
 };
 
 /** One level as made. */
@@ -53,7 +55,7 @@ private:
   };
 
   Draft
-  Compact() const;
+  Compact(const LevelRequest & request) const;
   bool
   CollapseTo(IdType target, BuiltLevel & level, const std::function<void()> & progress);
   std::string
@@ -64,6 +66,8 @@ private:
   std::vector<IdType>            m_BeforePoint; ///< its points in the finest level
   std::vector<IdType>            m_BeforeCell;  ///< its cell of each slot, -1 for none
   std::vector<IdType>            m_SampleCell;  ///< its cell of each density sample
+  MeshArrays                     m_Finest;      ///< for distances
+  int                            m_Degree;      ///< of changed cells
   std::unique_ptr<MeshCollapser> m_Collapser;
   ParallelFor                    m_ParallelFor;
 };

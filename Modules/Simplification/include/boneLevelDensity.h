@@ -4,10 +4,12 @@
 #ifndef boneLevelDensity_h
 #define boneLevelDensity_h
 
-#include "boneBernstein.h"
+#include "boneDensityFitKernel.h"
 #include "boneDensitySamples.h"
+#include "boneTetraLocator.h"
 
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace bone
@@ -15,30 +17,67 @@ namespace bone
 /** Runs a body for every index 0..n-1, perhaps in parallel. */
 using ParallelFor = std::function<void(std::size_t n, const std::function<void(std::size_t)> & body)>;
 
-/** \brief Gives a level its density: cells that did not change keep theirs, the others are fitted to the level before.
+/** \class LevelDensity
+ * \brief The density of a new level: cells that did not change keep theirs, the others are fitted to the level before.
  *
- * \param before      the level before, with density.
- * \param level       the new level; degree, coefficients and quantity are written.
- * \param parentCell  for each cell of \a level its cell in \a before if it did not change, otherwise -1.
- * \param cellSlot    for each cell of \a level its slot in \a samples.
- * \param sampleCell  for each sample its cell in \a before: where the search begins.
- * Changed cells get the largest degree of the mesh; a point of theirs outside the level before has the density of the
- * nearest place of its boundary. The same result for any number of threads. */
-void
-RefitDensity(const MeshArrays &          before,
-             MeshArrays &                level,
-             const std::vector<IdType> & parentCell,
-             const std::vector<IdType> & cellSlot,
-             const DensitySamples &      samples,
-             const std::vector<IdType> & sampleCell,
-             const ParallelFor &         parallelFor);
+ * A point of a changed cell that lies outside the level before has the density of the nearest place of its boundary.
+ * Errors are measured at the samples of the finest level. The same result for any number of threads. */
+class LevelDensity
+{
+public:
+  /** \param before      the level before, with density.
+   * \param parentCell  for each cell of the new level its cell in \a before if it did not change, otherwise -1.
+   * \param cellSlot    for each cell of the new level its slot in \a samples.
+   * \param sampleCell  for each sample its cell in \a before: where the search begins.
+   * All must live as long as this. */
+  LevelDensity(const MeshArrays &          before,
+               const std::vector<IdType> & parentCell,
+               const std::vector<IdType> & cellSlot,
+               const DensitySamples &      samples,
+               const std::vector<IdType> & sampleCell,
+               const ParallelFor &         parallelFor);
 
-/** Root mean square difference of a level's density to the samples of the finest, in density units. */
-double
-DensityError(const MeshArrays &          level,
-             const std::vector<IdType> & cellSlot,
-             const DensitySamples &      samples,
-             const ParallelFor &         parallelFor);
+  /** Writes degree, coefficients and quantity of a level; changed cells get the degree asked for. */
+  void
+  Fit(MeshArrays & level, int degree) const;
+
+  /** \brief Raises the degree of changed cells, those of the largest error first and one step at a time, until the error
+   * of the level is no more than \a bound or nothing is left to raise.
+   *
+   * A cell keeps its lower degree where the higher one does not make it better. Returns the error. */
+  double
+  Elevate(MeshArrays & level, double bound, int maximumDegree) const;
+
+  /** Root mean square difference of a level's density to the samples of the finest, in density units. */
+  double
+  Error(const MeshArrays & level) const;
+
+private:
+  struct Errors
+  {
+    std::vector<double> squares; ///< of each cell, density^2 mm^3
+    double              square{ 0.0 };
+    double              weight{ 0.0 };
+  };
+
+  Errors
+  Measure(const MeshArrays & level) const;
+  double
+  CellSquares(const MeshArrays & level, IdType t, int degree, const double * coefficients) const;
+  void
+  FitCell(const MeshArrays & level, IdType t, const DensityFitKernel & kernel, double * coefficients) const;
+  const DensityFitKernel &
+  Kernel(int degree) const;
+
+  const MeshArrays &                      m_Before;
+  const std::vector<IdType> &             m_ParentCell;
+  const std::vector<IdType> &             m_CellSlot;
+  const DensitySamples &                  m_Samples;
+  const std::vector<IdType> &             m_SampleCell;
+  const ParallelFor &                     m_ParallelFor;
+  TetraLocator                            m_Locator;
+  mutable std::map<int, DensityFitKernel> m_Kernels;
+};
 } // namespace bone
 
 #endif

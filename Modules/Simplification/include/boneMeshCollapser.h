@@ -5,13 +5,15 @@
 #define boneMeshCollapser_h
 
 #include "boneDensitySamples.h"
+#include "boneSurfaceEnvelope.h"
 #include "boneSurfaceGrid.h"
 #include "boneSurfaceSamples.h"
 #include "boneTetraComplex.h"
+#include "boneTetraFlips.h"
 
 #include <functional>
 #include <limits>
-#include <map>
+#include <optional>
 #include <queue>
 #include <vector>
 
@@ -24,9 +26,10 @@ struct CollapseParameters
   double surfaceWeight{ 1.0 };  ///< 1/mm, of the squared distance of boundary and interfaces, integrated
   double volumeWeight{ 200.0 }; ///< of the growth of each region's squared volume error over its volume
   double shapeWeight{ 0.05 };   ///< of the cells' volume, where their smallest dihedral angle is small
-  double minimumAngle{ 0.052 }; ///< rad; no collapse takes a dihedral angle below this and below what it was
-  double maximumDistance{ std::numeric_limits<double>::infinity() };     ///< mm, of removed points to their surface
+  double minimumAngle{ 0.05235987755982988 }; ///< rad; no dihedral angle falls below this and below what it was
+  double minimumCorticalAngle{ 0.02617993877991494 }; ///< rad, the same in the outermost layer, which may be thin
   double maximumVolumeChange{ std::numeric_limits<double>::infinity() }; ///< of each region, as a share
+  bool   boundDistance{ false };                                         ///< SetMaximumDistance may be called
 };
 
 /** \class MeshCollapser
@@ -36,7 +39,8 @@ struct CollapseParameters
  * of the queue and something around it has changed (lazily), and the point goes back where the cost has grown.
  * A collapse is refused, by reason, where v would leave its surface or curve, where the link condition fails, where a
  * changed tetrahedron would not be positive (exact), where a dihedral angle would fall both below the floor and below
- * what it was, where the boundary would pass through itself, and beyond the bounds on distance and volume.
+ * what it was, where the boundary would pass through itself, and beyond the bounds on volume and on distance
+ * (\ref SurfaceEnvelope).
  *
  * Cost of v -> w = densityWeight R(v) / range^2 + surfaceWeight S(v, w) + volumeWeight sum of ((E + dV)^2 - E^2) / V
  * + shapeWeight V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3: R from \ref DensitySamples::RemovalCost, S from \ref
@@ -50,9 +54,14 @@ public:
   std::size_t
   Run(IdType target, const std::function<void()> & progress = {});
 
-  /** Flips at cells below the angle (rad); no more cells than there are. Returns the number of flips. */
+  /** Flips at cells below the angle (rad). Returns the number of flips. */
   std::size_t
-  Flip(double angle);
+  Flip(double angle, FlipCellCount cellCount);
+
+  /** Bound on the distance of boundary and interfaces to those of the finest level, both ways, mm; default infinity.
+   * Must not descend. \pre CollapseParameters::boundDistance. */
+  void
+  SetMaximumDistance(double distance);
 
   const TetraComplex &
   Complex() const
@@ -64,16 +73,12 @@ public:
   {
     return m_Densities;
   }
-  double
-  SurfaceDistance() const
+  /** Where nothing was left to collapse: the bound that refuses most candidates, Distance or Volume; Done where neither
+   * refuses any. */
+  MeshOperation
+  StoppedBy() const
   {
-    return m_SurfaceSamples.LargestDistance();
-  }
-  /** Where nothing was left to collapse: whether a bound on distance or volume was among the reasons. */
-  bool
-  IsBoundedBySurfaces() const
-  {
-    return m_BoundedBySurfaces;
+    return m_StoppedBy;
   }
   /** Refused candidates by \ref MeshOperation. */
   const std::array<std::size_t, MeshOperationCount> &
@@ -113,6 +118,12 @@ private:
     double volume;
     double error;
   };
+  /** Largest cosines of dihedral angles that cells may have. */
+  struct Limits
+  {
+    double cortical;
+    double other;
+  };
   enum class State : std::uint8_t
   {
     Queued,
@@ -123,7 +134,9 @@ private:
   Candidate
   FindBest(IdType v);
   MeshOperation
-  Rate(IdType v, IdType w, double densityCost, double worstNow, double & cost);
+  Rate(IdType v, IdType w, double densityCost, const Limits & limits, double & cost);
+  Limits
+  LimitsAround(IdType v) const;
   MeshOperation
   CheckExactly(IdType v, IdType w);
   MeshOperation
@@ -158,8 +171,11 @@ private:
   std::vector<std::size_t>                    m_Epoch; ///< number of collapses when the cost was computed
   std::size_t                                 m_Collapses{ 0 };
   IdType                                      m_RefreshAt{ 0 }; ///< number of cells
+  bool                                        m_Stale{ false }; ///< parked points may be allowed by now
   std::vector<char>                           m_Changed;
-  bool                                        m_BoundedBySurfaces{ false };
+  std::optional<SurfaceEnvelope>              m_Envelope;
+  double                                      m_MaximumDistance{ std::numeric_limits<double>::infinity() };
+  MeshOperation                               m_StoppedBy{ MeshOperation::Done };
   std::array<std::size_t, MeshOperationCount> m_Refused{};
   std::vector<TetraComplex::SurfaceFace>      m_Faces;
 };

@@ -39,11 +39,6 @@ public:
   void
   GiveTo(const TetraComplex & complex, const std::vector<int> & samples, const std::vector<IdType> & cells);
 
-  /** Largest distance of a removed point to the present surface, mm; an upper bound, tight where faces are not thinner
-   * than they are far. */
-  double
-  LargestDistance() const;
-
 private:
   struct Sample
   {

@@ -26,9 +26,12 @@ namespace bone
  * measured against the first level. Cells that change are fitted again, at each level's end, to samples of the level
  * before. Flips make the worst cells better; points stay where they are.
  *
- * A level ends at its number of tetrahedra, at its bound on the density error (checked after every 6 % of the cells,
- * the last step being taken back), or when the bounds on surfaces and quality allow nothing more; the level's
- * stopReason says which. Levels that would be as large as the one before are still made.
+ * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
+ * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",
+ * "density error bound", "surface distance bound", "volume bound", "nothing more allowed". The density error is measured
+ * after every 6 % of the cells; a step beyond the bound is taken back and halved, down to half a percent. Where
+ * MaximumDegree allows it, degrees are raised before that (paper 4.3). Levels that would be as large as the one before
+ * are still made. A level's surfaceError is the largest distance of its surfaces to those of the first level, or back.
  *
  * Collapses are sequential, fits are threaded by cell: the result is the same for any number of threads.
  *
@@ -75,15 +78,29 @@ public:
   {
     return m_MaximumDensityErrors;
   }
-  /** Bound on the distance of every removed point of boundary and interfaces to its surface, mm; default infinity. */
-  itkSetMacro(MaximumSurfaceDistance, double);
-  itkGetConstMacro(MaximumSurfaceDistance, double);
-  /** Bound on the change of each region's volume, as a share of it; default infinity. */
+  /** Bounds on the distance of boundary and interfaces of the levels after the first to those of the first, and back,
+   * mm, at every point of them (\ref SurfaceEnvelope); not descending; where there are fewer than levels, the rest have
+   * none. */
+  void
+  SetMaximumSurfaceDistances(const std::vector<double> & distances);
+  const std::vector<double> &
+  GetMaximumSurfaceDistances() const
+  {
+    return m_MaximumSurfaceDistances;
+  }
+  /** Bound on the change of each region's volume, as a share of it; default 0.03. */
   itkSetMacro(MaximumVolumeChange, double);
   itkGetConstMacro(MaximumVolumeChange, double);
-  /** No collapse takes a dihedral angle below this and below what it was, rad; default 0.052 (3 degrees). */
+  /** Degree to which the polynomials of changed cells may be raised, those with the largest error first, so that a level
+   * keeps to its bound on the density error; negative (the default): they keep the degree of the input. */
+  itkSetMacro(MaximumDegree, int);
+  itkGetConstMacro(MaximumDegree, int);
+  /** No collapse takes a dihedral angle below this and below what was there, rad; default 3 degrees. */
   itkSetMacro(MinimumDihedralAngle, double);
   itkGetConstMacro(MinimumDihedralAngle, double);
+  /** The same for cells of the cortical layer, which has room for less where it is thin; default 1.5 degrees. */
+  itkSetMacro(MinimumCorticalDihedralAngle, double);
+  itkGetConstMacro(MinimumCorticalDihedralAngle, double);
   /** Weights of the cost, see \ref MeshCollapser: of the density error, default 1; */
   itkSetMacro(DensityWeight, double);
   itkGetConstMacro(DensityWeight, double);
@@ -128,9 +145,11 @@ private:
 
   std::vector<IdType>      m_Levels;
   std::vector<double>      m_MaximumDensityErrors;
-  double                   m_MaximumSurfaceDistance{ std::numeric_limits<double>::infinity() };
-  double                   m_MaximumVolumeChange{ std::numeric_limits<double>::infinity() };
-  double                   m_MinimumDihedralAngle{ 0.052 };
+  std::vector<double>      m_MaximumSurfaceDistances;
+  double                   m_MaximumVolumeChange{ 0.03 };
+  double                   m_MinimumDihedralAngle{ CollapseParameters().minimumAngle };
+  double                   m_MinimumCorticalDihedralAngle{ CollapseParameters().minimumCorticalAngle };
+  int                      m_MaximumDegree{ -1 };
   double                   m_DensityWeight{ 1.0 };
   double                   m_SurfaceWeight{ 1.0 };
   double                   m_VolumeWeight{ 200.0 };

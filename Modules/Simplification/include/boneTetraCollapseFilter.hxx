@@ -78,13 +78,24 @@ TetraCollapseFilter<TMesh>::SetMaximumDensityErrors(const std::vector<double> & 
 
 template <typename TMesh>
 void
+TetraCollapseFilter<TMesh>::SetMaximumSurfaceDistances(const std::vector<double> & distances)
+{
+  if (distances != m_MaximumSurfaceDistances)
+  {
+    m_MaximumSurfaceDistances = distances;
+    this->Modified();
+  }
+}
+
+template <typename TMesh>
+void
 TetraCollapseFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
 {
   Superclass::VerifyPreconditions();
-  if (m_Levels.empty() && m_MaximumDensityErrors.empty())
+  if (m_Levels.empty() && m_MaximumDensityErrors.empty() && m_MaximumSurfaceDistances.empty())
   {
-    itkExceptionMacro("No levels are asked for; give numbers of tetrahedra (SetLevels) or bounds on the density error "
-                      "(SetMaximumDensityErrors).");
+    itkExceptionMacro("No levels are asked for; give numbers of tetrahedra (SetLevels), bounds on the density error "
+                      "(SetMaximumDensityErrors) or on the distance of surfaces (SetMaximumSurfaceDistances).");
   }
   for (std::size_t i = 0; i < m_Levels.size(); ++i)
   {
@@ -94,13 +105,22 @@ TetraCollapseFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
                                  << " tetrahedra; levels must be positive and not ascend.");
     }
   }
-  for (std::size_t i = 0; i < m_MaximumDensityErrors.size(); ++i)
-  {
-    if (!(m_MaximumDensityErrors[i] >= 0) || (i > 0 && m_MaximumDensityErrors[i] < m_MaximumDensityErrors[i - 1]))
+  const auto checkBounds = [this](const std::vector<double> & bounds, const char * what) {
+    for (std::size_t i = 0; i < bounds.size(); ++i)
     {
-      itkExceptionMacro("The density error of level " << i + 2 << " is bounded by " << m_MaximumDensityErrors[i]
-                                                      << "; bounds must not be negative and not descend.");
+      if (!(bounds[i] >= 0) || (i > 0 && bounds[i] < bounds[i - 1]))
+      {
+        itkExceptionMacro("The " << what << " of level " << i + 2 << " is bounded by " << bounds[i]
+                                 << "; bounds must not be negative and not descend.");
+      }
     }
+  };
+  checkBounds(m_MaximumDensityErrors, "density error");
+  checkBounds(m_MaximumSurfaceDistances, "surface distance");
+  if (m_MaximumDegree > MaximumBernsteinDegree)
+  {
+    itkExceptionMacro("MaximumDegree is " << m_MaximumDegree << "; it must not be above " << MaximumBernsteinDegree
+                                          << '.');
   }
   const auto check = [this](const char * name, double value, double upper) {
     if (!(value >= 0 && value <= upper))
@@ -108,9 +128,9 @@ TetraCollapseFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
       itkExceptionMacro("" << name << " is " << value << "; it must lie between 0 and " << upper << ".");
     }
   };
-  check("MaximumSurfaceDistance", m_MaximumSurfaceDistance, std::numeric_limits<double>::infinity());
   check("MaximumVolumeChange", m_MaximumVolumeChange, std::numeric_limits<double>::infinity());
   check("MinimumDihedralAngle", m_MinimumDihedralAngle, 1.23);
+  check("MinimumCorticalDihedralAngle", m_MinimumCorticalDihedralAngle, 1.23);
   check("DensityWeight", m_DensityWeight, std::numeric_limits<double>::max());
   check("SurfaceWeight", m_SurfaceWeight, std::numeric_limits<double>::max());
   check("VolumeWeight", m_VolumeWeight, std::numeric_limits<double>::max());
@@ -125,7 +145,8 @@ TetraCollapseFilter<TMesh>::MakeParameters() const
   parameters.surfaceWeight = m_SurfaceWeight;
   parameters.volumeWeight = m_VolumeWeight;
   parameters.minimumAngle = m_MinimumDihedralAngle;
-  parameters.maximumDistance = m_MaximumSurfaceDistance;
+  parameters.minimumCorticalAngle = m_MinimumCorticalDihedralAngle;
+  parameters.boundDistance = !m_MaximumSurfaceDistances.empty();
   parameters.maximumVolumeChange = m_MaximumVolumeChange;
   return parameters;
 }
@@ -134,10 +155,16 @@ template <typename TMesh>
 std::vector<LevelRequest>
 TetraCollapseFilter<TMesh>::MakeRequests() const
 {
-  std::vector<LevelRequest> requests(std::max(m_Levels.size(), m_MaximumDensityErrors.size()));
+  std::vector<LevelRequest> requests(
+    std::max({ m_Levels.size(), m_MaximumDensityErrors.size(), m_MaximumSurfaceDistances.size() }));
   for (std::size_t i = 0; i < requests.size(); ++i)
   {
     requests[i].tetrahedra = i < m_Levels.size() ? m_Levels[i] : 0;
+    requests[i].maximumDegree = m_MaximumDegree;
+    if (i < m_MaximumSurfaceDistances.size())
+    {
+      requests[i].maximumSurfaceDistance = m_MaximumSurfaceDistances[i];
+    }
     requests[i].maximumDensityError = i < m_MaximumDensityErrors.size() ? m_MaximumDensityErrors[i] : -1.0;
   }
   return requests;
@@ -209,10 +236,16 @@ TetraCollapseFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) con
   {
     os << ' ' << e;
   }
+  os << std::endl << indent << "MaximumSurfaceDistances:";
+  for (double d : m_MaximumSurfaceDistances)
+  {
+    os << ' ' << d;
+  }
   os << std::endl;
-  os << indent << "MaximumSurfaceDistance: " << m_MaximumSurfaceDistance << std::endl;
+  os << indent << "MaximumDegree: " << m_MaximumDegree << std::endl;
   os << indent << "MaximumVolumeChange: " << m_MaximumVolumeChange << std::endl;
   os << indent << "MinimumDihedralAngle: " << m_MinimumDihedralAngle << std::endl;
+  os << indent << "MinimumCorticalDihedralAngle: " << m_MinimumCorticalDihedralAngle << std::endl;
   os << indent << "DensityWeight: " << m_DensityWeight << std::endl;
   os << indent << "SurfaceWeight: " << m_SurfaceWeight << std::endl;
   os << indent << "VolumeWeight: " << m_VolumeWeight << std::endl;

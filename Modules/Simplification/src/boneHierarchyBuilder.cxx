@@ -12,8 +12,26 @@ namespace
 {
 /** Flips after a level is reached look at cells with a dihedral angle below this, rad (25 degrees). */
 constexpr double FlipAngle = 0.44;
-/** Under a bound on the density error, this share of the cells goes before the error is measured again. */
+/** Under a bound on the density error, this share of the cells goes before the error is measured again; when the bound
+ * is passed, the step is taken back and halved until it is this small. */
 constexpr double Stride = 0.06;
+constexpr double SmallestStride = 0.005;
+/** Cells are flipped once more when there are so many more than asked for: flips that make fewer cells come first. */
+constexpr double FlipAhead = 1.02;
+
+std::string
+ReasonOf(const MeshCollapser & collapser)
+{
+  switch (collapser.StoppedBy())
+  {
+    case MeshOperation::Distance:
+      return "surface distance bound";
+    case MeshOperation::Volume:
+      return "volume bound";
+    default:
+      return "nothing more allowed";
+  }
+}
 } // namespace
 
 HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & parameters, ParallelFor parallelFor)
@@ -31,6 +49,8 @@ HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & p
   m_Source.region = m_Before.region;
   std::iota(m_BeforePoint.begin(), m_BeforePoint.end(), 0);
   std::iota(m_BeforeCell.begin(), m_BeforeCell.end(), 0);
+  m_Finest = m_Before;
+  m_Degree = m_Before.maximumDegree;
   m_Collapser = std::make_unique<MeshCollapser>(m_Before, parameters);
   m_SampleCell.resize(m_Collapser->Densities().All().size());
   for (std::size_t t = 0; t < m_Before.tetrahedra.size(); ++t)
@@ -43,7 +63,7 @@ HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & p
 }
 
 HierarchyBuilder::Draft
-HierarchyBuilder::Compact() const
+HierarchyBuilder::Compact(const LevelRequest & request) const
 {
   Draft draft;
   draft.mesh = m_Collapser->Complex().Compact(m_Source, draft.pointId, draft.cellSlot);
@@ -58,16 +78,22 @@ HierarchyBuilder::Compact() const
     const bool kept = slot < static_cast<IdType>(m_BeforeCell.size()) && !changed[slot];
     parent.push_back(kept ? m_BeforeCell[slot] : -1);
   }
-  RefitDensity(m_Before, draft.mesh, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, m_ParallelFor);
-  draft.densityError = DensityError(draft.mesh, draft.cellSlot, m_Collapser->Densities(), m_ParallelFor);
+  const LevelDensity density(
+    m_Before, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, m_ParallelFor);
+  density.Fit(draft.mesh, m_Degree);
+  draft.densityError = request.maximumDensityError >= 0
+                         ? density.Elevate(draft.mesh, request.maximumDensityError, request.maximumDegree)
+                         : density.Error(draft.mesh);
   return draft;
 }
 
 bool
 HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const std::function<void()> & progress)
 {
+  level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), progress);
+  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore);
   level.collapses += m_Collapser->Run(target, progress);
-  m_Collapser->Flip(FlipAngle);
+  m_Collapser->Flip(FlipAngle, FlipCellCount::Same);
   return m_Collapser->Complex().AliveCells() <= target;
 }
 
@@ -76,21 +102,27 @@ HierarchyBuilder::CollapseWithin(const LevelRequest &          request,
                                  BuiltLevel &                  level,
                                  const std::function<void()> & progress)
 {
+  double stride = Stride;
   while (m_Collapser->Complex().AliveCells() > request.tetrahedra)
   {
     const MeshCollapser last = *m_Collapser;
     const std::size_t   collapses = level.collapses;
-    const auto          next = static_cast<IdType>((1.0 - Stride) * last.Complex().AliveCells());
+    const auto          next = static_cast<IdType>((1.0 - stride) * last.Complex().AliveCells());
     const bool          reached = CollapseTo(std::max(next, request.tetrahedra), level, progress);
-    if (Compact().densityError > request.maximumDensityError)
+    if (Compact(request).densityError > request.maximumDensityError)
     {
+      level.refused[static_cast<int>(MeshOperation::Density)] += level.collapses - collapses;
       *m_Collapser = last;
       level.collapses = collapses;
-      return "density error bound";
+      stride /= 2.0;
+      if (stride < SmallestStride)
+      {
+        return "density error bound";
+      }
     }
-    if (!reached)
+    else if (!reached)
     {
-      return "nothing more allowed";
+      return ReasonOf(*m_Collapser);
     }
   }
   return "tetrahedra reached";
@@ -105,25 +137,22 @@ HierarchyBuilder::Next(const LevelRequest & request, const std::function<void(do
   const double span = std::max(1.0, start - request.tetrahedra);
   const auto   report = [&]() { progress(std::min(1.0, (start - m_Collapser->Complex().AliveCells()) / span)); };
   m_Collapser->ClearChanged();
+  m_Collapser->SetMaximumDistance(request.maximumSurfaceDistance);
   if (m_Before.HasDensity() && request.maximumDensityError >= 0)
   {
     level.stopReason = CollapseWithin(request, level, report);
   }
   else
   {
-    level.stopReason = CollapseTo(request.tetrahedra, level, report) ? "tetrahedra reached" : "nothing more allowed";
+    level.stopReason = CollapseTo(request.tetrahedra, level, report) ? "tetrahedra reached" : ReasonOf(*m_Collapser);
   }
-  if (level.stopReason == "nothing more allowed" && m_Collapser->IsBoundedBySurfaces())
-  {
-    level.stopReason = "surface bounds";
-  }
-  Draft draft = Compact();
+  Draft draft = Compact(request);
   level.mesh = std::move(draft.mesh);
   level.densityError = draft.densityError;
-  level.surfaceError = m_Collapser->SurfaceDistance();
+  level.surfaceError = LargestSurfaceDistance(m_Finest, level.mesh);
   for (int i = 0; i < MeshOperationCount; ++i)
   {
-    level.refused[i] = m_Collapser->Refused()[i] - refusedBefore[i];
+    level.refused[i] += m_Collapser->Refused()[i] - refusedBefore[i];
   }
   for (IdType id : draft.pointId)
   {

@@ -3,13 +3,13 @@
  *=========================================================================*/
 #include "boneLevelDensity.h"
 
-#include "boneDensityFitKernel.h"
-#include "boneTetraLocator.h"
+#include "boneBernstein.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace bone
 {
@@ -29,6 +29,24 @@ Clamped(const Barycentric & mu)
   return positive / positive.sum();
 }
 
+/** Makes room for cells of a higher degree. */
+void
+Widen(MeshArrays & level, int degree)
+{
+  if (degree <= level.maximumDegree)
+  {
+    return;
+  }
+  const std::size_t   from = BernsteinCount(level.maximumDegree), to = BernsteinCount(degree);
+  std::vector<double> wide(to * level.tetrahedra.size(), 0.0);
+  for (std::size_t t = 0; t < level.tetrahedra.size(); ++t)
+  {
+    std::copy_n(&level.coefficients[from * t], from, &wide[to * t]);
+  }
+  level.coefficients = std::move(wide);
+  level.maximumDegree = degree;
+}
+
 /** The sample of a cell that is nearest to x. */
 int
 NearestSample(const DensitySamples & samples, const std::vector<int> & candidates, const Vector3 & x)
@@ -39,76 +57,171 @@ NearestSample(const DensitySamples & samples, const std::vector<int> & candidate
 }
 } // namespace
 
-void
-RefitDensity(const MeshArrays &          before,
-             MeshArrays &                level,
-             const std::vector<IdType> & parentCell,
-             const std::vector<IdType> & cellSlot,
-             const DensitySamples &      samples,
-             const std::vector<IdType> & sampleCell,
-             const ParallelFor &         parallelFor)
+LevelDensity::LevelDensity(const MeshArrays &          before,
+                           const std::vector<IdType> & parentCell,
+                           const std::vector<IdType> & cellSlot,
+                           const DensitySamples &      samples,
+                           const std::vector<IdType> & sampleCell,
+                           const ParallelFor &         parallelFor)
+  : m_Before(before)
+  , m_ParentCell(parentCell)
+  , m_CellSlot(cellSlot)
+  , m_Samples(samples)
+  , m_SampleCell(sampleCell)
+  , m_ParallelFor(parallelFor)
+  , m_Locator(before)
+{}
+
+const DensityFitKernel &
+LevelDensity::Kernel(int degree) const
 {
-  const int              degree = before.maximumDegree;
-  const std::size_t      row = BernsteinCount(degree), count = level.tetrahedra.size();
-  const DensityFitKernel kernel(degree, degree + 3);
-  const auto &           pattern = kernel.SamplePoints();
-  const TetraLocator     locator(before);
+  const auto at = m_Kernels.find(degree);
+  return at != m_Kernels.end() ? at->second : m_Kernels.emplace(degree, DensityFitKernel(degree, degree + 3)).first->second;
+}
+
+void
+LevelDensity::FitCell(const MeshArrays & level, IdType t, const DensityFitKernel & kernel, double * coefficients) const
+{
+  const auto &             pattern = kernel.SamplePoints();
+  const std::size_t        row = BernsteinCount(m_Before.maximumDegree);
+  const Id4 &              v = level.tetrahedra[t];
+  const std::vector<int> & candidates = m_Samples.InCell(m_CellSlot[t]);
+  std::vector<double>      values(pattern.size());
+  IdType                   at = candidates.empty() ? m_SampleCell[0] : m_SampleCell[candidates.front()];
+  for (std::size_t k = 0; k < pattern.size(); ++k)
+  {
+    const Barycentric & mu = pattern[k];
+    const Vector3       x = mu[0] * level.points[v[0]] + mu[1] * level.points[v[1]] + mu[2] * level.points[v[2]] +
+                      mu[3] * level.points[v[3]];
+    if (!candidates.empty())
+    {
+      at = m_SampleCell[NearestSample(m_Samples, candidates, x)];
+    }
+    const CellLocation place = m_Locator.FindNearest(x, at);
+    values[k] = BernsteinValue(m_Before.degree[place.cell], &m_Before.coefficients[row * place.cell], place.mu);
+  }
+  kernel.Fit(values.data(), coefficients);
+}
+
+void
+LevelDensity::Fit(MeshArrays & level, int degree) const
+{
+  const std::size_t count = level.tetrahedra.size(), from = BernsteinCount(m_Before.maximumDegree);
   level.maximumDegree = degree;
-  level.quantity = before.quantity;
   level.degree.assign(count, degree);
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    if (m_ParentCell[t] >= 0)
+    {
+      level.degree[t] = m_Before.degree[m_ParentCell[t]];
+      level.maximumDegree = std::max(level.maximumDegree, level.degree[t]);
+    }
+  }
+  const std::size_t        row = BernsteinCount(level.maximumDegree);
+  const DensityFitKernel & kernel = Kernel(degree);
+  level.quantity = m_Before.quantity;
   level.coefficients.assign(row * count, 0.0);
-  parallelFor(count, [&](std::size_t t) {
-    const IdType parent = parentCell[t];
+  m_ParallelFor(count, [&](std::size_t t) {
+    const IdType parent = m_ParentCell[t];
     if (parent >= 0)
     {
-      level.degree[t] = before.degree[parent];
-      std::copy_n(&before.coefficients[row * parent], row, &level.coefficients[row * t]);
-      return;
+      std::copy_n(&m_Before.coefficients[from * parent], std::min(from, row), &level.coefficients[row * t]);
     }
-    const Id4 &              v = level.tetrahedra[t];
-    const std::vector<int> & candidates = samples.InCell(cellSlot[t]);
-    std::vector<double>      values(pattern.size());
-    IdType                   at = candidates.empty() ? sampleCell[0] : sampleCell[candidates.front()];
-    for (std::size_t k = 0; k < pattern.size(); ++k)
+    else
     {
-      const Barycentric & mu = pattern[k];
-      const Vector3       x = mu[0] * level.points[v[0]] + mu[1] * level.points[v[1]] + mu[2] * level.points[v[2]] +
-                        mu[3] * level.points[v[3]];
-      if (!candidates.empty())
-      {
-        at = sampleCell[NearestSample(samples, candidates, x)];
-      }
-      const CellLocation place = locator.FindNearest(x, at);
-      values[k] = BernsteinValue(before.degree[place.cell], &before.coefficients[row * place.cell], place.mu);
+      FitCell(level, static_cast<IdType>(t), kernel, &level.coefficients[row * t]);
     }
-    kernel.Fit(values.data(), &level.coefficients[row * t]);
   });
 }
 
 double
-DensityError(const MeshArrays &          level,
-             const std::vector<IdType> & cellSlot,
-             const DensitySamples &      samples,
-             const ParallelFor &         parallelFor)
+LevelDensity::CellSquares(const MeshArrays & level, IdType t, int degree, const double * coefficients) const
 {
-  const std::size_t   row = BernsteinCount(level.maximumDegree);
-  std::vector<double> squares(level.tetrahedra.size(), 0.0), weights(level.tetrahedra.size(), 0.0);
-  parallelFor(level.tetrahedra.size(), [&](std::size_t t) {
-    for (int s : samples.InCell(cellSlot[t]))
-    {
-      const auto &      sample = samples.All()[s];
-      const Barycentric mu = Clamped(CoordinatesIn(level, static_cast<IdType>(t), sample.x));
-      const double      error = BernsteinValue(level.degree[t], &level.coefficients[row * t], mu) - sample.value;
-      squares[t] += sample.weight * error * error;
-      weights[t] += sample.weight;
-    }
-  });
-  double square = 0.0, weight = 0.0;
-  for (std::size_t t = 0; t < squares.size(); ++t)
+  double sum = 0.0;
+  for (int s : m_Samples.InCell(m_CellSlot[t]))
   {
-    square += squares[t];
-    weight += weights[t];
+    const auto &      sample = m_Samples.All()[s];
+    const Barycentric mu = Clamped(CoordinatesIn(level, t, sample.x));
+    const double      error = BernsteinValue(degree, coefficients, mu) - sample.value;
+    sum += sample.weight * error * error;
   }
-  return weight > 0 ? std::sqrt(square / weight) : 0.0;
+  return sum;
+}
+
+LevelDensity::Errors
+LevelDensity::Measure(const MeshArrays & level) const
+{
+  const std::size_t row = BernsteinCount(level.maximumDegree), count = level.tetrahedra.size();
+  Errors            errors;
+  errors.squares.resize(count);
+  m_ParallelFor(count, [&](std::size_t t) {
+    errors.squares[t] = CellSquares(level, static_cast<IdType>(t), level.degree[t], &level.coefficients[row * t]);
+  });
+  errors.square = std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0);
+  for (const auto & sample : m_Samples.All())
+  {
+    errors.weight += sample.weight;
+  }
+  return errors;
+}
+
+double
+LevelDensity::Error(const MeshArrays & level) const
+{
+  const Errors errors = Measure(level);
+  return errors.weight > 0 ? std::sqrt(errors.square / errors.weight) : 0.0;
+}
+
+double
+LevelDensity::Elevate(MeshArrays & level, double bound, int maximumDegree) const
+{
+  // A step takes away about this share of a cell's squared error, going by smooth densities.
+  constexpr double Gain = 0.4;
+  Errors           errors = Measure(level);
+  std::vector<int> tried = level.degree;
+  while (errors.square > bound * bound * errors.weight)
+  {
+    std::vector<std::pair<double, IdType>> worst;
+    for (std::size_t t = 0; t < errors.squares.size(); ++t)
+    {
+      if (m_ParentCell[t] < 0 && tried[t] < maximumDegree && errors.squares[t] > 0)
+      {
+        worst.emplace_back(-errors.squares[t], static_cast<IdType>(t));
+      }
+    }
+    if (worst.empty())
+    {
+      break;
+    }
+    std::sort(worst.begin(), worst.end());
+    std::size_t count = 0;
+    for (double excess = errors.square - bound * bound * errors.weight; count < worst.size() && excess > 0; ++count)
+    {
+      excess += Gain * worst[count].first;
+    }
+    worst.resize(count);
+    int highest = 0;
+    for (const auto & cell : worst)
+    {
+      highest = std::max(highest, ++tried[cell.second]);
+      Kernel(tried[cell.second]);
+    }
+    Widen(level, highest);
+    const std::size_t row = BernsteinCount(level.maximumDegree);
+    m_ParallelFor(count, [&](std::size_t k) {
+      const IdType        t = worst[k].second;
+      std::vector<double> coefficients(BernsteinCount(tried[t]));
+      FitCell(level, t, m_Kernels.at(tried[t]), coefficients.data());
+      const double square = CellSquares(level, t, tried[t], coefficients.data());
+      if (square < errors.squares[t])
+      {
+        errors.squares[t] = square;
+        level.degree[t] = tried[t];
+        std::copy(coefficients.begin(), coefficients.end(), &level.coefficients[row * t]);
+      }
+    });
+    errors.square = std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0);
+  }
+  return errors.weight > 0 ? std::sqrt(errors.square / errors.weight) : 0.0;
 }
 } // namespace bone

@@ -5,7 +5,6 @@
 
 #include "bonePredicates.h"
 #include "boneQualityMeasures.h"
-#include "boneTetraFlips.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +64,10 @@ MeshCollapser::MeshCollapser(const MeshArrays & mesh, const CollapseParameters &
   , m_RefreshAt(m_Complex.AliveCells())
   , m_Changed(mesh.tetrahedra.size(), 0)
 {
+  if (parameters.boundDistance)
+  {
+    m_Envelope.emplace(m_Complex);
+  }
   const auto & p = m_Complex.Points();
   for (IdType t = 0; t < m_Complex.Size(); ++t)
   {
@@ -123,12 +126,11 @@ MeshCollapser::CheckVolume(IdType v, double & cost)
 }
 
 MeshOperation
-MeshCollapser::Rate(IdType v, IdType w, double densityCost, double worstNow, double & cost)
+MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limits, double & cost)
 {
   const auto & p = m_Complex.Points();
   double       worst = -1.0, volume = 0.0;
   std::fill(m_VolumeChange.begin(), m_VolumeChange.end(), 0.0);
-  const double limit = std::max(std::cos(m_Parameters.minimumAngle), worstNow);
   for (IdType t : m_Complex.Star(v))
   {
     Id4          c = m_Complex.Cell(t);
@@ -145,8 +147,9 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, double worstNow, dou
     {
       return MeshOperation::Orientation;
     }
-    worst = std::max(worst, LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
-    if (worst > limit)
+    const double cosine = LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    worst = std::max(worst, cosine);
+    if (cosine > (m_Complex.Region(t) == Cortical ? limits.cortical : limits.other))
     {
       return MeshOperation::Quality;
     }
@@ -158,7 +161,7 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, double worstNow, dou
     return MeshOperation::Topology; // nothing would be left of the star
   }
   const auto surface = m_SurfaceSamples.CollapseCost(m_Complex, v, w);
-  if (surface.largestDistance > m_Parameters.maximumDistance)
+  if (surface.largestDistance > m_MaximumDistance)
   {
     return MeshOperation::Distance;
   }
@@ -167,6 +170,18 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, double worstNow, dou
   cost = densityCost + m_Parameters.surfaceWeight * surface.integral +
          m_Parameters.shapeWeight * volume * shape * shape + LengthWeight * length * length * length;
   return CheckVolume(v, cost);
+}
+
+MeshCollapser::Limits
+MeshCollapser::LimitsAround(IdType v) const
+{
+  Limits limits{ std::cos(m_Parameters.minimumCorticalAngle), std::cos(m_Parameters.minimumAngle) };
+  for (IdType t : m_Complex.Star(v))
+  {
+    double & limit = m_Complex.Region(t) == Cortical ? limits.cortical : limits.other;
+    limit = std::max(limit, CellCosine(m_Complex, t));
+  }
+  return limits;
 }
 
 bool
@@ -207,7 +222,15 @@ MeshCollapser::CheckExactly(IdType v, IdType w)
       }
     }
   }
-  return m_Complex.Dimension(v) < 3 && BoundaryCrosses(v, w) ? MeshOperation::Overlap : MeshOperation::Done;
+  if (m_Complex.Dimension(v) == 3)
+  {
+    return MeshOperation::Done;
+  }
+  if (m_Envelope && !m_Envelope->Allows(m_Complex, v, w, m_MaximumDistance))
+  {
+    return MeshOperation::Distance;
+  }
+  return BoundaryCrosses(v, w) ? MeshOperation::Overlap : MeshOperation::Done;
 }
 
 MeshCollapser::Candidate
@@ -229,11 +252,7 @@ MeshCollapser::FindBest(IdType v)
     default:
       targets = m_Complex.PointNeighbors(v);
   }
-  double worst = -1.0;
-  for (IdType t : m_Complex.Star(v))
-  {
-    worst = std::max(worst, CellCosine(m_Complex, t));
-  }
+  const Limits limits = LimitsAround(v);
   const double densityCost =
     m_Parameters.densityWeight > 0 && !m_Densities.IsEmpty()
       ? m_Parameters.densityWeight * m_Densities.RemovalCost(m_Complex, v) / (m_Densities.Range() * m_Densities.Range())
@@ -242,7 +261,7 @@ MeshCollapser::FindBest(IdType v)
   for (IdType w : targets)
   {
     double              cost = 0.0;
-    const MeshOperation outcome = Rate(v, w, densityCost, worst, cost);
+    const MeshOperation outcome = Rate(v, w, densityCost, limits, cost);
     if (outcome == MeshOperation::Done)
     {
       rated.emplace_back(cost, w);
@@ -286,7 +305,7 @@ void
 MeshCollapser::Commit(IdType v, IdType w)
 {
   double unused = 0.0;
-  Rate(v, w, 0.0, 1.0, unused); // for the change of volumes
+  Rate(v, w, 0.0, { 1.0, 1.0 }, unused); // for the change of volumes
   for (std::size_t r = 0; r < m_Regions.size(); ++r)
   {
     m_Regions[r].error += m_VolumeChange[r];
@@ -296,6 +315,10 @@ MeshCollapser::Commit(IdType v, IdType w)
   {
     UpdateGrid(v, false);
     UpdateGrid(w, false);
+    if (m_Envelope)
+    {
+      m_Envelope->Commit(m_Complex, v, w, m_MaximumDistance);
+    }
   }
   const std::vector<IdType> around = m_Complex.Star(v);
   const auto                densities = m_Densities.TakeFrom(around);
@@ -347,10 +370,20 @@ MeshCollapser::NoteWhyParked()
     }
   }
   const auto grown = [&](MeshOperation reason) {
-    return m_Refused[static_cast<int>(reason)] > before[static_cast<int>(reason)];
+    return m_Refused[static_cast<int>(reason)] - before[static_cast<int>(reason)];
   };
-  m_BoundedBySurfaces = grown(MeshOperation::Distance) || grown(MeshOperation::Volume);
+  const auto distance = grown(MeshOperation::Distance), volume = grown(MeshOperation::Volume);
+  m_StoppedBy = distance + volume == 0 ? MeshOperation::Done
+                : distance >= volume   ? MeshOperation::Distance
+                                       : MeshOperation::Volume;
   m_Refused = before;
+}
+
+void
+MeshCollapser::SetMaximumDistance(double distance)
+{
+  m_Stale = m_Stale || distance != m_MaximumDistance;
+  m_MaximumDistance = distance;
 }
 
 std::size_t
@@ -361,6 +394,12 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
   {
     if (m_Queue.empty() && !Requeue())
     {
+      // Volumes are bounded for whole regions, so that what was refused may have become allowed from afar.
+      if (m_Stale)
+      {
+        Refresh();
+        continue;
+      }
       NoteWhyParked();
       break;
     }
@@ -388,6 +427,7 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
     Commit(v, m_Target[v]);
     ++collapses;
     ++m_Collapses;
+    m_Stale = true;
     if (m_Complex.AliveCells() < m_RefreshAt)
     {
       Refresh();
@@ -403,8 +443,9 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
 void
 MeshCollapser::Refresh()
 {
-  Flip(FlipAngle);
+  Flip(FlipAngle, FlipCellCount::NotMore);
   m_RefreshAt = static_cast<IdType>(RefreshShare * m_Complex.AliveCells());
+  m_Stale = false;
   m_Queue = {};
   for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
   {
@@ -425,11 +466,11 @@ MeshCollapser::Refresh()
 }
 
 std::size_t
-MeshCollapser::Flip(double angle)
+MeshCollapser::Flip(double angle, FlipCellCount cellCount)
 {
   FlipParameters parameters;
   parameters.targetAngle = angle;
-  parameters.keepCellCount = true;
+  parameters.cellCount = cellCount;
   const auto report = ImproveByFlips(m_Complex, parameters, [this](const FlipResult & flip) {
     m_Changed.resize(m_Complex.Size(), 0);
     m_Densities.GiveTo(m_Complex, m_Densities.TakeFrom(flip.removed), flip.created);

@@ -189,15 +189,4 @@ SurfaceSamples::GiveTo(const TetraComplex &        complex,
     }
   }
 }
-
-double
-SurfaceSamples::LargestDistance() const
-{
-  double largest = 0.0;
-  for (const Sample & sample : m_Samples)
-  {
-    largest = std::max(largest, sample.squaredDistance);
-  }
-  return std::sqrt(largest);
-}
 } // namespace bone

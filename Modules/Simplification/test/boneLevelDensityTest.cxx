@@ -36,9 +36,11 @@ TEST(LevelDensity, RefitOfUnchangedCellsReproducesAndKeptCellsAreCopied)
       sampleCell[s] = t;
     }
   }
-  MeshArrays level = mesh;
+  const ParallelFor serial = Serial;
+  MeshArrays        level = mesh;
   level.coefficients.clear();
-  RefitDensity(mesh, level, parents, slots, samples, sampleCell, Serial);
+  const LevelDensity density(mesh, parents, slots, samples, sampleCell, serial);
+  density.Fit(level, 2);
   ASSERT_EQ(level.coefficients.size(), mesh.coefficients.size());
   for (std::size_t i = 0; i < mesh.coefficients.size(); ++i)
   {
@@ -46,12 +48,12 @@ TEST(LevelDensity, RefitOfUnchangedCellsReproducesAndKeptCellsAreCopied)
     EXPECT_NEAR(level.coefficients[i], mesh.coefficients[i], kept ? 0.0 : 1e-8);
   }
   EXPECT_EQ(level.quantity, mesh.quantity);
-  EXPECT_NEAR(DensityError(level, slots, samples, Serial), 0.0, 1e-9);
+  EXPECT_NEAR(density.Error(level), 0.0, 1e-9);
   for (double & c : level.coefficients)
   {
     c += 5;
   }
-  EXPECT_NEAR(DensityError(level, slots, samples, Serial), 5.0, 1e-9);
+  EXPECT_NEAR(density.Error(level), 5.0, 1e-9);
 }
 
 TEST(DensitySamples, RemovingAVertexCostsNothingWhereThePolynomialGoesOn)

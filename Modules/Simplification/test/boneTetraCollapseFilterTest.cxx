@@ -78,6 +78,7 @@ Simplified(const MeshArrays & mesh, const std::vector<IdType> & levels)
   auto filter = FilterType::New();
   filter->SetInput(AsMesh(mesh));
   filter->SetLevels(levels);
+  filter->SetMaximumVolumeChange(1.0);
   filter->Update();
   return filter;
 }
@@ -191,7 +192,7 @@ TEST(TetraCollapseFilter, BoundsAreHonoured)
     auto filter = FilterType::New();
     filter->SetInput(AsMesh(mesh));
     filter->SetMaximumDensityErrors({ 4.0, 15.0 });
-    filter->SetMaximumSurfaceDistance(0.4);
+    filter->SetMaximumSurfaceDistances({ 0.4, 0.4 });
     filter->SetMaximumVolumeChange(0.02);
     filter->Update();
     const auto & levels = filter->GetOutput()->GetLevels();
@@ -199,7 +200,8 @@ TEST(TetraCollapseFilter, BoundsAreHonoured)
     {
       EXPECT_LE(levels[i].densityError, i == 1 ? 4.0 : 15.0);
       EXPECT_LE(levels[i].surfaceError, 0.4 + 1e-12);
-      EXPECT_TRUE(levels[i].stopReason == "density error bound" || levels[i].stopReason == "surface bounds");
+      EXPECT_TRUE(levels[i].stopReason == "density error bound" ||
+                  levels[i].stopReason == "surface distance bound" || levels[i].stopReason == "volume bound");
       EXPECT_LE(levels[i].mesh->GetNumberOfTetrahedra(), levels[i - 1].mesh->GetNumberOfTetrahedra());
       const auto level = levels[i].mesh->GetArrays();
       EXPECT_TRUE(ValidateMesh(level).IsValid());
@@ -240,9 +242,9 @@ TEST(TetraCollapseFilter, SaysWhenNothingMoreIsAllowed)
   auto bounded = FilterType::New();
   bounded->SetInput(AsMesh(Body(1)));
   bounded->SetLevels({ 1 });
-  bounded->SetMaximumSurfaceDistance(0.05);
+  bounded->SetMaximumSurfaceDistances({ 0.05 });
   bounded->Update();
-  EXPECT_EQ(bounded->GetOutput()->GetLevels()[1].stopReason, "surface bounds");
+  EXPECT_EQ(bounded->GetOutput()->GetLevels()[1].stopReason, "surface distance bound");
   EXPECT_GT(bounded->GetReport()[0].refused[static_cast<int>(MeshOperation::Distance)], 0u);
 }
 
@@ -354,7 +356,7 @@ TEST(TetraCollapseFilter, RefusesBadInputsAndParameters)
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ -1.0 }); }, "negative");
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ std::nan("") }); }, "negative");
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ 5.0 }); }, "no density");
-  refuses([](FilterType * f) { f->SetMaximumSurfaceDistance(std::nan("")); }, "MaximumSurfaceDistance");
+  refuses([](FilterType * f) { f->SetMaximumSurfaceDistances({ std::nan("") }); }, "surface distance");
   refuses([](FilterType * f) { f->SetMaximumVolumeChange(-1); }, "MaximumVolumeChange");
   refuses([](FilterType * f) { f->SetMinimumDihedralAngle(2); }, "MinimumDihedralAngle");
   refuses([](FilterType * f) { f->SetVolumeWeight(-1); }, "VolumeWeight");
