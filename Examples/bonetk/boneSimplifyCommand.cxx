@@ -14,20 +14,26 @@ namespace bone
 {
 namespace
 {
+constexpr double Radian = 0.017453292519943295;
+
 struct Options
 {
   std::string         mesh;
   std::vector<IdType> tetrahedra;
   std::vector<double> errors;
+  std::vector<double> distances;
+  double              volume{ 3.0 };
+  double              angle{ 3.0 };
+  int                 degree{ -1 };
   std::string         prefix;
 };
 
 void
 Run(const Options & options, Session & session)
 {
-  if (options.tetrahedra.empty() && options.errors.empty())
+  if (options.tetrahedra.empty() && options.errors.empty() && options.distances.empty())
   {
-    throw UsageError("--tetrahedra or --max-density-error is required");
+    throw UsageError("--tetrahedra, --max-density-error or --max-surface-distance is required");
   }
   if (!std::is_sorted(options.tetrahedra.rbegin(), options.tetrahedra.rend()))
   {
@@ -37,10 +43,19 @@ Run(const Options & options, Session & session)
   {
     throw UsageError("--max-density-error must not descend: each level is coarser than the one before");
   }
+  if (!std::is_sorted(options.distances.begin(), options.distances.end()))
+  {
+    throw UsageError("--max-surface-distance must not descend: each level is coarser than the one before");
+  }
   auto collapse = TetraCollapseFilter<DensityMesh<double>>::New();
   collapse->SetInput(ReadDensityMesh(options.mesh));
   collapse->SetLevels(options.tetrahedra);
   collapse->SetMaximumDensityErrors(options.errors);
+  collapse->SetMaximumSurfaceDistances(options.distances);
+  collapse->SetMaximumVolumeChange(options.volume / 100.0);
+  collapse->SetMinimumDihedralAngle(options.angle * Radian);
+  collapse->SetMinimumCorticalDihedralAngle(0.5 * options.angle * Radian);
+  collapse->SetMaximumDegree(options.degree);
   session.Watch(collapse, "simplification");
   collapse->Update();
   WriteHierarchy(collapse->GetOutput(), options.prefix);
@@ -60,6 +75,26 @@ AddSimplifyCommand(CLI::App & app, Action & action)
                  options->errors,
                  "Bound on the root mean square density error of each coarser level, in density units")
     ->check(NotNegative());
+  command
+    ->add_option("--max-surface-distance",
+                 options->distances,
+                 "Bound on the distance of boundary and interfaces of each coarser level to the first, and back, mm")
+    ->check(NotNegative());
+  command
+    ->add_option("--max-volume-change",
+                 options->volume,
+                 "Bound on the change of each region's volume, %; default 3")
+    ->check(NotNegative());
+  command
+    ->add_option("--min-angle",
+                 options->angle,
+                 "No dihedral angle falls below this and what was there, degrees; half of it in the cortical layer; default 3")
+    ->check(Between(0, 70));
+  command
+    ->add_option("--max-degree",
+                 options->degree,
+                 "Degree to which polynomials may be raised to keep to --max-density-error; default: not raised")
+    ->check(Between(0, 8));
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });

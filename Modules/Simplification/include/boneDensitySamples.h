@@ -13,12 +13,14 @@ namespace bone
 /** \class DensitySamples
  * \brief The density of the finest level as a cloud of weighted samples, each known to the cell that it lies in.
  *
- * Four samples a cell of the finest level, at the points and weights of the quadrature rule that is exact to degree 2.
+ * Ten samples a cell of the finest level, evenly spread, each standing for the same share of the cell's volume.
  * While cells change, samples go to the cells that cover them, so that the error of any later mesh is always measured
  * against the finest level and does not add up unseen (paper 4.3). */
 class DensitySamples
 {
 public:
+  static constexpr int SamplesPerCell = 10;
+
   struct Sample
   {
     Vector3 x;

@@ -29,7 +29,7 @@ namespace bone
  * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
  * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",
  * "density error bound", "surface distance bound", "volume bound", "nothing more allowed". The density error is measured
- * after every 6 % of the cells; a step beyond the bound is taken back and halved, down to half a percent. Where
+ * after steps of 30 % of the cells; one beyond the bound is taken back and halved, down to half a percent. Where
  * MaximumDegree allows it, degrees are raised before that (paper 4.3). Levels that would be as large as the one before
  * are still made. A level's surfaceError is the largest distance of its surfaces to those of the first level, or back.
  *

@@ -64,23 +64,26 @@ DensitySamples::DensitySamples(const MeshArrays & mesh)
   {
     return;
   }
-  const double      a = (5.0 - std::sqrt(5.0)) / 20.0, b = 1.0 - 3.0 * a;
   const std::size_t row = BernsteinCount(mesh.maximumDegree);
   m_FitDegree = std::min(2, mesh.maximumDegree);
-  m_Samples.reserve(4 * mesh.tetrahedra.size());
+  m_Samples.reserve(SamplesPerCell * mesh.tetrahedra.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
   {
     const Id4 &     v = mesh.tetrahedra[t];
     const Vector3 * p[4] = { &mesh.points[v[0]], &mesh.points[v[1]], &mesh.points[v[2]], &mesh.points[v[3]] };
-    const double    weight = SignedVolume(*p[0], *p[1], *p[2], *p[3]) / 4.0;
+    const double    weight = SignedVolume(*p[0], *p[1], *p[2], *p[3]) / SamplesPerCell;
     for (int i = 0; i < 4; ++i)
     {
-      Barycentric mu = Barycentric::Constant(a);
-      mu[i] = b;
-      m_InCell[t].push_back(static_cast<int>(m_Samples.size()));
-      m_Samples.push_back({ mu[0] * *p[0] + mu[1] * *p[1] + mu[2] * *p[2] + mu[3] * *p[3],
-                            BernsteinValue(mesh.degree[t], &mesh.coefficients[row * t], mu),
-                            weight });
+      for (int j = i; j < 4; ++j)
+      {
+        Barycentric mu = Barycentric::Constant(0.125);
+        mu[i] += 0.25;
+        mu[j] += 0.25;
+        m_InCell[t].push_back(static_cast<int>(m_Samples.size()));
+        m_Samples.push_back({ mu[0] * *p[0] + mu[1] * *p[1] + mu[2] * *p[2] + mu[3] * *p[3],
+                              BernsteinValue(mesh.degree[t], &mesh.coefficients[row * t], mu),
+                              weight });
+      }
     }
   }
   m_Range = m_Samples.empty() ? 1.0 : PercentileRange(m_Samples);

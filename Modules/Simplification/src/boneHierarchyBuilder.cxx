@@ -14,7 +14,7 @@ namespace
 constexpr double FlipAngle = 0.44;
 /** Under a bound on the density error, this share of the cells goes before the error is measured again; when the bound
  * is passed, the step is taken back and halved until it is this small. */
-constexpr double Stride = 0.06;
+constexpr double Stride = 0.3;
 constexpr double SmallestStride = 0.005;
 /** Cells are flipped once more when there are so many more than asked for: flips that make fewer cells come first. */
 constexpr double FlipAhead = 1.02;
@@ -81,9 +81,22 @@ HierarchyBuilder::Compact(const LevelRequest & request) const
   const LevelDensity density(
     m_Before, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, m_ParallelFor);
   density.Fit(draft.mesh, m_Degree);
-  draft.densityError = request.maximumDensityError >= 0
-                         ? density.Elevate(draft.mesh, request.maximumDensityError, request.maximumDegree)
-                         : density.Error(draft.mesh);
+  double bound = request.maximumDensityError;
+  for (int attempt = 0; attempt < (bound < 0 ? 1 : 3); ++attempt)
+  {
+    // Samples come first, being quick; where they say too little, the bound on them is lowered as much.
+    if (bound >= 0 && density.Elevate(draft.mesh, bound, request.maximumDegree) > bound)
+    {
+      draft.densityError = std::numeric_limits<double>::infinity();
+      break;
+    }
+    draft.densityError = density.IntegratedError(m_Finest, draft.mesh);
+    if (draft.densityError <= request.maximumDensityError || request.maximumDegree <= m_Degree)
+    {
+      break;
+    }
+    bound *= request.maximumDensityError / draft.densityError;
+  }
   return draft;
 }
 

@@ -47,6 +47,40 @@ Widen(MeshArrays & level, int degree)
   level.maximumDegree = degree;
 }
 
+/** Points and weights of 24, exact to degree 6. P. Keast, "Moderate-degree tetrahedral quadrature formulas", Comput.
+ * Methods Appl. Mech. Eng. 55 (1986). */
+std::vector<std::pair<Barycentric, double>>
+QuadratureOfDegree6()
+{
+  std::vector<std::pair<Barycentric, double>> rule;
+  constexpr double                            Single[3][2] = { { 0.2146028712591517, 0.0066537917096945820 * 6 },
+                                                               { 0.0406739585346113, 0.0016795351758867834 * 6 },
+                                                               { 0.3223378901422757, 0.0092261969239424996 * 6 } };
+  for (const auto & orbit : Single)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      Barycentric mu = Barycentric::Constant(orbit[0]);
+      mu[i] = 1.0 - 3.0 * orbit[0];
+      rule.emplace_back(mu, orbit[1]);
+    }
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = 0; j < 4; ++j)
+    {
+      if (i != j)
+      {
+        Barycentric mu = Barycentric::Constant(0.0636610018750175);
+        mu[i] = 0.2696723314583159;
+        mu[j] = 1.0 - 2.0 * 0.0636610018750175 - 0.2696723314583159;
+        rule.emplace_back(mu, 0.0080357142857142857 * 6);
+      }
+    }
+  }
+  return rule;
+}
+
 /** The sample of a cell that is nearest to x. */
 int
 NearestSample(const DensitySamples & samples, const std::vector<int> & candidates, const Vector3 & x)
@@ -170,6 +204,41 @@ LevelDensity::Error(const MeshArrays & level) const
 {
   const Errors errors = Measure(level);
   return errors.weight > 0 ? std::sqrt(errors.square / errors.weight) : 0.0;
+}
+
+double
+LevelDensity::IntegratedError(const MeshArrays & finest, const MeshArrays & level) const
+{
+  const std::size_t   count = finest.tetrahedra.size(), rowFinest = BernsteinCount(finest.maximumDegree);
+  const std::size_t   row = BernsteinCount(level.maximumDegree);
+  const auto          rule = QuadratureOfDegree6();
+  const TetraLocator  locator(level);
+  std::vector<IdType> start(count, 0);
+  for (std::size_t t = 0; t < m_CellSlot.size(); ++t)
+  {
+    for (int s : m_Samples.InCell(m_CellSlot[t]))
+    {
+      start[s / DensitySamples::SamplesPerCell] = static_cast<IdType>(t);
+    }
+  }
+  std::vector<double> squares(count, 0.0), volumes(count, 0.0);
+  m_ParallelFor(count, [&](std::size_t t) {
+    const Id4 &  v = finest.tetrahedra[t];
+    const auto & p = finest.points;
+    IdType       at = start[t];
+    volumes[t] = SignedVolume(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
+    for (const auto & [mu, weight] : rule)
+    {
+      const Vector3      x = mu[0] * p[v[0]] + mu[1] * p[v[1]] + mu[2] * p[v[2]] + mu[3] * p[v[3]];
+      const CellLocation place = locator.FindNearest(x, at);
+      at = place.cell;
+      const double error = BernsteinValue(finest.degree[t], &finest.coefficients[rowFinest * t], mu) -
+                           BernsteinValue(level.degree[at], &level.coefficients[row * at], place.mu);
+      squares[t] += weight * volumes[t] * error * error;
+    }
+  });
+  const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / volume);
 }
 
 double

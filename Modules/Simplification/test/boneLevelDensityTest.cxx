@@ -62,7 +62,7 @@ TEST(DensitySamples, RemovingAVertexCostsNothingWhereThePolynomialGoesOn)
   test::SetDensity(mesh, 1, [](const Vector3 & x) { return 3 * x.x() - x.y() + 5; });
   const TetraComplex   complex(mesh);
   const DensitySamples samples(mesh);
-  EXPECT_EQ(samples.All().size(), 4 * mesh.tetrahedra.size());
+  EXPECT_EQ(samples.All().size(), 10 * mesh.tetrahedra.size());
   double volume = 0;
   for (const auto & sample : samples.All())
   {
