@@ -218,7 +218,7 @@ int
 Time(const std::string & file, int repeat, const std::vector<IdType> & counts)
 {
   const auto mesh = ReadDensityMesh(file);
-  double     wall = 1e30, processor = 1e30;
+  double     wall = std::numeric_limits<double>::max(), processor = wall;
   for (int k = 0; k < repeat; ++k)
   {
     const auto seconds = TimeOf(MakeFilter(mesh, counts, 2));

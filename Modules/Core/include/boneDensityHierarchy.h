@@ -5,10 +5,15 @@
 #define boneDensityHierarchy_h
 
 #include "boneDensityMesh.h"
+#include "boneXRayGeometry.h"
 
+#include <Eigen/Geometry>
 #include <itkDataObject.h>
 #include <itkObjectFactory.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace bone
@@ -40,7 +45,7 @@ public:
     double densityErrorBound{ -1.0 };
     /** Root mean square density difference to the first level, in density units (paper 4.3). */
     double densityError{ 0.0 };
-    /** Largest distance of a boundary or interface vertex removed so far to the level's surface, mm. */
+    /** Largest distance of boundary and interfaces to those of the first level, or back, mm. */
     double surfaceError{ 0.0 };
     /** Why the simplification of this level ended ("tetrahedra reached", "density error bound", ...). */
     std::string stopReason;
@@ -67,6 +72,49 @@ public:
   {
     return m_Levels.at(level).mesh;
   }
+
+  /** \defgroup PickLevel Which level to use, as its index; 0 is the finest. They need at least one level.
+   * \{ */
+  /** The finest level of no more than so many tetrahedra; the coarsest where all have more. */
+  std::size_t
+  PickByCount(IdType tetrahedra) const
+  {
+    std::size_t level = 0;
+    while (level + 1 < m_Levels.size() && m_Levels[level].mesh->GetNumberOfTetrahedra() > tetrahedra)
+    {
+      ++level;
+    }
+    return level;
+  }
+  /** The coarsest level whose errors are no more than these (density units, mm). */
+  std::size_t
+  PickByError(double densityError, double surfaceError = std::numeric_limits<double>::infinity()) const
+  {
+    std::size_t level = m_Levels.size() - 1;
+    while (level > 0 && (m_Levels[level].densityError > densityError || m_Levels[level].surfaceError > surfaceError))
+    {
+      --level;
+    }
+    return level;
+  }
+  /** The coarsest level whose surfaces are nowhere away from those of the first by more than so many pixels of a view,
+   * at the magnification of the part of the model that is nearest to the source. */
+  std::size_t
+  PickByPixelSize(const XRayGeometry & geometry, double pixels = 1.0) const
+  {
+    const auto &  view = geometry.GetView();
+    const Vector3 normal = view.detectorU.cross(view.detectorV);
+    double        magnification = 1.0;
+    const auto    arrays = m_Levels.at(0).mesh->GetArrays();
+    for (const Vector3 & x : view.parallel ? std::vector<Vector3>() : arrays.points)
+    {
+      const double depth = std::abs((x - view.source).dot(normal));
+      magnification = std::max(magnification, std::abs((view.detectorOrigin - view.source).dot(normal)) / depth);
+    }
+    return this->PickByError(std::numeric_limits<double>::infinity(),
+                             pixels * std::min(view.spacing[0], view.spacing[1]) / magnification);
+  }
+  /** \} */
 
   void
   Initialize() override

@@ -4,6 +4,8 @@
 #include "boneDensityMesh.h"
 
 #include "boneDensityHierarchy.h"
+#include "boneHierarchyLocator.h"
+#include "boneTestBodies.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -164,5 +166,71 @@ TEST(DensityHierarchy, HoldsItsLevels)
   hierarchy->Initialize();
   EXPECT_EQ(hierarchy->GetNumberOfLevels(), 0u);
   EXPECT_THROW(hierarchy->Graft(mesh), itk::ExceptionObject);
+}
+
+TEST(DensityHierarchy, PicksTheLevelThatIsJustGoodEnough)
+{
+  auto                                   hierarchy = DensityHierarchy<>::New();
+  std::vector<DensityHierarchy<>::Level> levels(3);
+  for (int k = 0; k < 3; ++k)
+  {
+    levels[k].mesh = DensityMesh<>::New();
+    levels[k].mesh->SetArrays(test::MakeBall(4 - k, { 1, 1 }, 10, 0.0, 1));
+    levels[k].densityError = 10.0 * k;
+    levels[k].surfaceError = 0.5 * k;
+  }
+  hierarchy->SetLevels(levels);
+  const auto count = [&](int k) { return levels[k].mesh->GetNumberOfTetrahedra(); };
+  EXPECT_EQ(hierarchy->PickByCount(count(0)), 0u);
+  EXPECT_EQ(hierarchy->PickByCount(count(0) - 1), 1u);
+  EXPECT_EQ(hierarchy->PickByCount(1), 2u);
+  EXPECT_EQ(hierarchy->PickByError(9.0), 0u);
+  EXPECT_EQ(hierarchy->PickByError(10.0), 1u);
+  EXPECT_EQ(hierarchy->PickByError(100.0), 2u);
+  EXPECT_EQ(hierarchy->PickByError(100.0, 0.7), 1u);
+  // Twice as large on the detector at the body's near side: 1 mm is 0.5 mm there.
+  XRayGeometry::View view;
+  view.source = { 0, -110, 0 };
+  view.detectorOrigin = { -100, 90, 100 };
+  auto geometry = XRayGeometry::New();
+  geometry->SetView(view);
+  EXPECT_EQ(hierarchy->PickByPixelSize(*geometry), 1u);
+  EXPECT_EQ(hierarchy->PickByPixelSize(*geometry, 0.9), 0u);
+  EXPECT_EQ(hierarchy->PickByPixelSize(*geometry, 2.01), 2u);
+  view.parallel = true;
+  geometry->SetView(view);
+  EXPECT_EQ(hierarchy->PickByPixelSize(*geometry), 2u);
+}
+
+TEST(HierarchyLocator, ACellOnOneLevelGivesAStartOnEveryOther)
+{
+  const std::vector<MeshArrays> levels = { test::MakeBall(4, { 2, 2 }, 10, 0.1, 1),
+                                           test::MakeBall(3, { 1, 2 }, 10, 0.1, 2),
+                                           test::MakeBall(2, { 1, 1 }, 10, 0.1, 3) };
+  const HierarchyLocator        locator(levels);
+  for (const Vector3 & x : { Vector3(1, 2, 3), Vector3(-4, 0.5, 2), Vector3(0, 0, 0.1), Vector3(20, 0, 0) })
+  {
+    for (std::size_t from = 0; from < 3; ++from)
+    {
+      const IdType cell = locator.GetLocator(from).FindNearest(x).cell;
+      EXPECT_EQ(locator.StartingCell(from, cell, from), cell);
+      for (std::size_t to = 0; to < 3; ++to)
+      {
+        const auto expected = locator.GetLocator(to).FindNearest(x);
+        const auto found = locator.FindNearest(to, x, from, cell);
+        EXPECT_EQ(found.cell, expected.cell);
+        EXPECT_EQ(found.distance, expected.distance);
+      }
+    }
+  }
+  // One step away the start holds the cell's centroid.
+  for (IdType cell = 0; cell < 50; ++cell)
+  {
+    const Id4 &   t = levels[0].tetrahedra[cell * 7];
+    const auto &  p = levels[0].points;
+    const Vector3 centroid = (p[t[0]] + p[t[1]] + p[t[2]] + p[t[3]]) / 4;
+    EXPECT_EQ(locator.StartingCell(0, cell * 7, 1), locator.GetLocator(1).FindNearest(centroid).cell);
+  }
+  EXPECT_THROW(HierarchyLocator({ MeshArrays() }), std::invalid_argument);
 }
 } // namespace bone
