@@ -92,7 +92,8 @@ ToJson(const TilingReport & tiling)
            { "alternativeKnits", tiling.alternativeKnits },
            { "patches", tiling.patches },
            { "filledSlabs", tiling.filledSlabs },
-           { "filledEnds", tiling.filledEnds } };
+           { "filledEnds", tiling.filledEnds },
+           { "partedGroups", tiling.partedGroups } };
 }
 
 /** A measure's distribution; `unit` is what its values are multiplied by. The histogram has equal bins over `range`. */

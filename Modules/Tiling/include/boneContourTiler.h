@@ -44,8 +44,8 @@ struct TilingParameters
  *
  * A hole that is bone above and below would be a void; it is closed and counted. Orientation is decided by exact
  * predicates and the result is validated: the function returns a valid mesh or throws std::runtime_error naming the
- * slice (pieces that belong together but lie beside each other; a correspondence that names a contour which is not
- * there).
+ * slice (a correspondence that names a contour which is not there, or joins pieces that lie beside each other and cannot
+ * be joined; pieces that overlap and distance joined so are not joined but reported).
  *
  * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
  * \ref MeshArrays. Deterministic. */

@@ -525,6 +525,35 @@ private:
         std::rethrow_exception(errors[i]);
       }
       Append(fillings[i]);
+      Report(fillings[i]);
+    }
+  }
+
+  /** Says which corresponding pieces were not joined; throws where the user had asked for them to be. */
+  void
+  Report(const SlabFilling & filling)
+  {
+    const int    k = filling.slice;
+    const auto & given = m_Parameters.correspondence;
+    const auto   list = [](const std::vector<int> & ids) {
+      std::string text;
+      for (int id : ids)
+      {
+        text += (text.empty() ? "" : ", ") + std::to_string(id);
+      }
+      return text;
+    };
+    for (int g : filling.parted)
+    {
+      const std::string text = "slice " + std::to_string(k) + ", contour " + list(IdsOf(k, m_Groups[k][g].lower)) +
+                               ": corresponds to contour " + list(IdsOf(k + 1, m_Groups[k][g].upper)) +
+                               " of the next slice but does not overlap all of it";
+      if (given && given->slabs.count(k) > 0)
+      {
+        throw std::runtime_error(text + " and cannot be joined to it; use a smaller slice step");
+      }
+      ++m_Report.partedGroups;
+      m_Report.notes.push_back(text + "; what does not overlap ends there");
     }
   }
 

@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 namespace bone
@@ -36,7 +37,8 @@ struct Side
   BoxTriangulation box;
   std::vector<int> poolId; ///< of each vertex; -1 for the box
   std::vector<int> region; ///< of each triangle; 0 outside
-  std::vector<int> group;  ///< of each triangle
+  std::vector<int> group;  ///< of each triangle; -1 outside
+  std::vector<int> piece;  ///< of each triangle; -1 outside
 };
 
 struct Bounds
@@ -120,6 +122,7 @@ MakeSide(const VertexPool &           pool,
       side.box.triangles.push_back(outside.GetTriangles()[t].vertices);
       side.region.push_back(0);
       side.group.push_back(-1);
+      side.piece.push_back(-1);
     }
   }
   for (std::size_t s = 0; s < sections.size(); ++s)
@@ -141,6 +144,7 @@ MakeSide(const VertexPool &           pool,
       side.box.triangles.push_back(vertices);
       side.region.push_back(triangle.region);
       side.group.push_back(groupOf[s]);
+      side.piece.push_back(static_cast<int>(s));
     }
   }
   return side;
@@ -208,6 +212,26 @@ MakeColumn(int lower, int upper, bool together, int steps, bool parted)
   return column;
 }
 
+/** True where links between lower and upper pieces join all pieces of a group. */
+bool
+Joined(const Group & group, const std::set<std::array<int, 2>> & links)
+{
+  std::set<int> lower{ group.lower.front() }, upper;
+  for (std::size_t before = 0; lower.size() + upper.size() > before;)
+  {
+    before = lower.size() + upper.size();
+    for (const auto & link : links)
+    {
+      if (lower.count(link[0]) > 0 || upper.count(link[1]) > 0)
+      {
+        lower.insert(link[0]);
+        upper.insert(link[1]);
+      }
+    }
+  }
+  return lower.size() == group.lower.size() && upper.size() == group.upper.size();
+}
+
 class SlabFiller
 {
 public:
@@ -219,33 +243,44 @@ public:
     , m_Overlay(OverlaySides(lower, upper))
   {}
 
-  /** Area of bone that has the same region, of the same group, on both slices; -1 where a group with members on both
-   * has none in common. */
+  /** Area of bone that has the same region, of the same group, on both slices. */
   double
-  CommonArea(const std::vector<char> & connected) const
+  CommonArea() const
   {
-    std::vector<double> area(connected.size(), 0.0);
-    double              common = 0.0;
+    double common = 0.0;
     for (const auto & t : m_Overlay.triangles)
     {
-      const int g = m_Sides[0]->group[t.first];
-      if (g >= 0 && g == m_Sides[1]->group[t.second])
+      if (m_Sides[0]->region[t.first] == m_Sides[1]->region[t.second] && Together(t))
       {
         const auto &  p = m_Overlay.points;
         const Vector2 d = p[t.vertices[1]] - p[t.vertices[0]], e = p[t.vertices[2]] - p[t.vertices[0]];
-        const double  here = 0.5 * (d.x() * e.y() - d.y() * e.x());
-        area[g] += here;
-        common += m_Sides[0]->region[t.first] == m_Sides[1]->region[t.second] ? here : 0.0;
-      }
-    }
-    for (std::size_t g = 0; g < connected.size(); ++g)
-    {
-      if (connected[g] && !(area[g] > 0))
-      {
-        return -1.0;
+        common += 0.5 * (d.x() * e.y() - d.y() * e.x());
       }
     }
     return common;
+  }
+
+  /** The groups with members on both slices that overlap does not join into one. */
+  std::vector<int>
+  PartedGroups(const std::vector<Group> & groups) const
+  {
+    std::set<std::array<int, 2>> links;
+    for (const auto & t : m_Overlay.triangles)
+    {
+      if (Together(t))
+      {
+        links.insert({ { m_Sides[0]->piece[t.first], m_Sides[1]->piece[t.second] } });
+      }
+    }
+    std::vector<int> parted;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+    {
+      if (!groups[g].lower.empty() && !groups[g].upper.empty() && !Joined(groups[g], links))
+      {
+        parted.push_back(static_cast<int>(g));
+      }
+    }
+    return parted;
   }
 
   SlabFilling
@@ -267,6 +302,13 @@ public:
   }
 
 private:
+  /** True where a triangle of the overlay lies in the same group on both slices. */
+  bool
+  Together(const PlanarOverlay::Triangle & t) const
+  {
+    return m_Sides[0]->group[t.first] >= 0 && m_Sides[0]->group[t.first] == m_Sides[1]->group[t.second];
+  }
+
   void
   MakeColumns()
   {
@@ -586,8 +628,66 @@ struct Alignment
 {
   Side                        below, above;
   std::unique_ptr<SlabFiller> filler;
-  double                      common{ -1.0 };
+  std::vector<int>            parted;
+  double                      common{ 0.0 };
+
+  bool
+  IsBetterThan(const Alignment & other) const
+  {
+    return parted.size() != other.parted.size() ? parted.size() < other.parted.size() : common > other.common;
+  }
 };
+
+/** The slices laid over each other at the shifts that may do, best first; `reason` says why others fail. */
+std::vector<std::unique_ptr<Alignment>>
+FindAlignments(const ContourStack &         stack,
+               const std::vector<Section> & lower,
+               const std::vector<Section> & upper,
+               const std::vector<Group> &   groups,
+               const VertexPool &           pool,
+               std::string &                reason)
+{
+  std::vector<int> lowerGroup(lower.size(), -1), upperGroup(upper.size(), -1);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    for (int i : groups[g].lower)
+    {
+      lowerGroup[i] = static_cast<int>(g);
+    }
+    for (int i : groups[g].upper)
+    {
+      upperGroup[i] = static_cast<int>(g);
+    }
+  }
+  const int                               slice = (lower.empty() ? upper : lower).front().slice;
+  std::vector<std::unique_ptr<Alignment>> alignments;
+  int                                     tried = 0;
+  for (const Vector2 & shift : CandidateShifts(pool, lower, upper, groups))
+  {
+    if (tried++ >= UsualShifts && !alignments.empty() && alignments.front()->parted.empty())
+    {
+      break;
+    }
+    auto alignment = std::make_unique<Alignment>();
+    try
+    {
+      const Bounds bounds = BoundsOf(pool, lower, upper, shift);
+      alignment->below = MakeSide(pool, lower, lowerGroup, bounds, Vector2::Zero());
+      alignment->above = MakeSide(pool, upper, upperGroup, bounds, shift);
+      alignment->filler = std::make_unique<SlabFiller>(stack, alignment->below, alignment->above, slice, pool);
+      alignment->parted = alignment->filler->PartedGroups(groups);
+      alignment->common = alignment->filler->CommonArea() / (shift.isZero() ? 1.0 : ShiftGain);
+      alignments.push_back(std::move(alignment));
+    }
+    catch (const std::runtime_error & error)
+    {
+      reason = error.what();
+    }
+    std::stable_sort(
+      alignments.begin(), alignments.end(), [](const auto & a, const auto & b) { return a->IsBetterThan(*b); });
+  }
+  return alignments;
+}
 } // namespace
 
 SlabFilling
@@ -599,62 +699,22 @@ FillSlab(const ContourStack &         stack,
          double                       upperHeight,
          const VertexPool &           pool)
 {
-  std::vector<int>  lowerGroup(lower.size(), -1), upperGroup(upper.size(), -1);
-  std::vector<char> connected;
-  for (const Group & group : groups)
-  {
-    for (int i : group.lower)
-    {
-      lowerGroup[i] = static_cast<int>(connected.size());
-    }
-    for (int i : group.upper)
-    {
-      upperGroup[i] = static_cast<int>(connected.size());
-    }
-    connected.push_back(!group.lower.empty() && !group.upper.empty());
-  }
-  const int                               slice = (lower.empty() ? upper : lower).front().slice;
-  std::string                             reason = "pieces that belong together do not overlap";
-  std::vector<std::unique_ptr<Alignment>> alignments;
-  for (const Vector2 & shift : CandidateShifts(pool, lower, upper, groups))
-  {
-    if (static_cast<int>(alignments.size()) >= UsualShifts && alignments.front()->common >= 0)
-    {
-      break;
-    }
-    auto alignment = std::make_unique<Alignment>();
-    try
-    {
-      const Bounds bounds = BoundsOf(pool, lower, upper, shift);
-      alignment->below = MakeSide(pool, lower, lowerGroup, bounds, Vector2::Zero());
-      alignment->above = MakeSide(pool, upper, upperGroup, bounds, shift);
-      alignment->filler = std::make_unique<SlabFiller>(stack, alignment->below, alignment->above, slice, pool);
-      alignment->common = alignment->filler->CommonArea(connected) / (shift.isZero() ? 1.0 : ShiftGain);
-    }
-    catch (const std::runtime_error & error)
-    {
-      reason = error.what();
-    }
-    alignments.push_back(std::move(alignment));
-    std::stable_sort(
-      alignments.begin(), alignments.end(), [](const auto & a, const auto & b) { return a->common > b->common; });
-  }
-  for (const auto & alignment : alignments)
+  std::string reason;
+  for (const auto & alignment : FindAlignments(stack, lower, upper, groups, pool, reason))
   {
     try
     {
-      if (alignment->common >= 0)
-      {
-        return alignment->filler->Run(lowerHeight, upperHeight);
-      }
+      SlabFilling filling = alignment->filler->Run(lowerHeight, upperHeight);
+      filling.parted = alignment->parted;
+      return filling;
     }
     catch (const std::runtime_error & error)
     {
       reason = error.what();
     }
   }
-  throw std::runtime_error("slice " + std::to_string(slice) + ": the space next to it cannot be filled, " + reason +
-                           "; use a smaller slice step");
+  throw std::runtime_error("slice " + std::to_string((lower.empty() ? upper : lower).front().slice) +
+                           ": the space next to it cannot be filled, " + reason + "; use a smaller slice step");
 }
 } // namespace tiling
 } // namespace bone

@@ -19,6 +19,7 @@ struct SlabFilling
   std::vector<int>        layers;     ///< of its own vertices
   std::vector<TiledTetra> tetrahedra; ///< own vertex i stands as -1 - i
   int                     slice{ 0 };
+  std::vector<int>        parted; ///< groups whose pieces do not all overlap: they are not joined here
 };
 
 /** \brief Fills the space between all sections of two slices, whatever branches, begins or ends there.
@@ -37,8 +38,9 @@ struct SlabFilling
  *    between the contours, and domes over what begins or ends. As outside is filled with tetrahedra too, no surface can
  *    pass through another.
  *
- * Vertices that could not be collapsed are moved to where they should be and stay. Throws std::runtime_error where pieces that belong together do not overlap
- * however the slices are moved. */
+ * Vertices that could not be collapsed are moved to where they should be and stay. Pieces of a group that do not overlap
+ * however the slices are moved end and begin there; the group is named in `parted`. Throws std::runtime_error where the
+ * contours are too close to be told apart. */
 SlabFilling
 FillSlab(const ContourStack &         stack,
          const std::vector<Section> & lower,

@@ -215,6 +215,33 @@ TEST(ContourTilingMeshSource, ACorrespondenceOverridesOverlap)
               testing::ThrowsMessage<itk::ExceptionObject>(testing::HasSubstr("slice 1, contour 7")));
 }
 
+TEST(ContourTilingMeshSource, CorrespondingPiecesThatCannotBeJoinedEndAndAreReported)
+{
+  // Two pieces against two have their slab filled; the other two pairs lean far, each its own way: only one of them can
+  // be made to overlap by moving the slices.
+  const std::vector<Loop> below = {
+    { { -12, 0 }, 7, 6, 0, 1 }, { { 3, 0 }, 6, 6, 0, 1 }, { { 0, 20 }, 3, 3, 0, 1 }, { { 0, -20 }, 3, 3, 0, 1 }
+  };
+  const std::vector<Loop> above = {
+    { { -17, 0 }, 6, 6, 0, 1 }, { { -2, 0 }, 8, 6, 0, 1 }, { { 7.2, 20 }, 3, 3, 0, 1 }, { { -7.2, -20 }, 3, 3, 0, 1 }
+  };
+  std::vector<std::vector<Loop>> slices(2, below);
+  slices.insert(slices.end(), 2, above);
+  auto source = Source::New();
+  source->SetInput(MakeStack(slices, 2.0));
+  source->Update();
+  const auto validation = bone::ValidateMesh(source->GetOutput()->GetArrays());
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 4);
+  EXPECT_EQ(source->GetReport().partedGroups, 1);
+  EXPECT_THAT(source->GetReport().notes, testing::Contains(testing::HasSubstr("does not overlap all of it")));
+
+  source->SetCorrespondence(
+    std::make_shared<bone::ContourCorrespondence>(bone::ContourCorrespondence(source->GetReport().correspondence)));
+  EXPECT_THAT([&] { source->Update(); },
+              testing::ThrowsMessage<itk::ExceptionObject>(testing::HasSubstr("cannot be joined to it")));
+}
+
 TEST(ContourTilingMeshSource, ASocketEndsInADome)
 {
   // Solid below, a hole above: its floor is neither on the lower slice nor on the upper one.
