@@ -8,6 +8,7 @@
 #include "boneMeshIO.h"
 #include "boneQualityMeasures.h"
 #include "boneRandomStack.h"
+#include "boneStackTopology.h"
 #include "boneSurfaceAudit.h"
 
 #include <algorithm>
@@ -61,8 +62,15 @@ main(int argc, char * argv[])
               << mesh.tetrahedra.size() << "\nslabs " << report.slabs << "\nbranchings " << report.branchings
               << "\nlayer_branchings " << report.layerBranchings << "\nfilled "
               << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
+              << "\nparted " << report.partedGroups
               << "\npatches " << report.patches << "\nleast_angle " << least << "\nmean_angle "
               << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
+    constexpr double pixel = 0.2; // mm
+    for (int region = 1; region <= 3; ++region)
+    {
+      std::cout << "topology_mesh_" << region << ' ' << bone::TopologyOfMesh(mesh, region) << "\ntopology_stack_" << region
+                << ' ' << bone::TopologyOfStack(*stack, region, pixel) << '\n';
+    }
     bone::WriteMeshArrays(mesh, argv[argc - 1]);
   }
   catch (const std::exception & error)

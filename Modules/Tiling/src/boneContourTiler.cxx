@@ -184,6 +184,7 @@ public:
     {
       CollectSlice(k);
     }
+    MatchSlices();
     for (int k = 0; k < slices; ++k)
     {
       BuildSlice(k);
@@ -210,7 +211,7 @@ private:
     }
   }
 
-  /** Sorts the contours of slice k into pieces and matches them with those of the slice before. */
+  /** Sorts the contours of slice k into pieces. */
   void
   CollectSlice(int k)
   {
@@ -224,17 +225,23 @@ private:
         m_Given.back().emplace(std::array<double, 2>{ { q.x(), q.y() } }, p);
       }
     }
-    if (k > 0)
+  }
+
+  void
+  MatchSlices()
+  {
+    std::vector<double> heights;
+    for (std::size_t k = 0; k < m_Pieces.size(); ++k)
     {
-      const auto & given = m_Parameters.correspondence;
-      m_Groups.push_back(
-        given && given->slabs.count(k - 1) > 0
-          ? GroupsGiven(k - 1, given->slabs.at(k - 1))
-          : MatchPieces(Outlines(k - 1), Outlines(k), m_Stack.GetHeight(k) - m_Stack.GetHeight(k - 1)));
-      auto & used = m_Report.correspondence.slabs[k - 1];
-      for (const Group & group : m_Groups.back())
+      heights.push_back(m_Stack.GetHeight(k));
+    }
+    m_Groups = MatchPieces(m_Pieces, heights, m_Parameters.correspondence.get());
+    for (int k = 0; k < static_cast<int>(m_Groups.size()); ++k)
+    {
+      auto & used = m_Report.correspondence.slabs[k];
+      for (const Group & group : m_Groups[k])
       {
-        used.push_back({ IdsOf(k - 1, group.lower), IdsOf(k, group.upper) });
+        used.push_back({ IdsOf(k, group.lower), IdsOf(k + 1, group.upper) });
       }
     }
   }
@@ -248,60 +255,6 @@ private:
       ids.push_back(m_Pieces[k][i].loops.front().id);
     }
     return ids;
-  }
-
-  /** Groups that were given for the slab above slice k; pieces in none are groups of their own. */
-  std::vector<Group>
-  GroupsGiven(int k, const std::vector<ContourCorrespondence::Group> & given) const
-  {
-    std::vector<Group>               groups(given.size());
-    std::array<std::vector<char>, 2> taken{ { std::vector<char>(m_Pieces[k].size(), 0),
-                                              std::vector<char>(m_Pieces[k + 1].size(), 0) } };
-    for (int side = 0; side < 2; ++side)
-    {
-      const auto & pieces = m_Pieces[k + side];
-      for (std::size_t g = 0; g < given.size(); ++g)
-      {
-        for (int id : side == 0 ? given[g].lower : given[g].upper)
-        {
-          const auto piece = std::find_if(
-            pieces.begin(), pieces.end(), [id](const PieceOutline & p) { return p.loops.front().id == id; });
-          const auto i = static_cast<int>(piece - pieces.begin());
-          if (piece == pieces.end() || taken[side][i])
-          {
-            throw std::runtime_error(PlaceOf(k + side, id) +
-                                     (piece == pieces.end()
-                                        ? "the correspondence names it, but it is no outer contour there"
-                                        : "the correspondence names it twice"));
-          }
-          taken[side][i] = 1;
-          (side == 0 ? groups[g].lower : groups[g].upper).push_back(i);
-        }
-      }
-      for (std::size_t i = 0; i < pieces.size(); ++i)
-      {
-        if (!taken[side][i])
-        {
-          groups.emplace_back();
-          (side == 0 ? groups.back().lower : groups.back().upper).push_back(static_cast<int>(i));
-        }
-      }
-    }
-    groups.erase(
-      std::remove_if(groups.begin(), groups.end(), [](const Group & g) { return g.lower.empty() && g.upper.empty(); }),
-      groups.end());
-    return groups;
-  }
-
-  std::vector<std::vector<Vector2>>
-  Outlines(int k) const
-  {
-    std::vector<std::vector<Vector2>> polygons;
-    for (const PieceOutline & piece : m_Pieces[k])
-    {
-      polygons.push_back(piece.loops.front().points);
-    }
-    return polygons;
   }
 
   /** Triangulates the pieces of slice k. */

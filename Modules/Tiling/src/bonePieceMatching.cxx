@@ -1,13 +1,14 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneSectionBuilder.h"
+#include "bonePieceMatching.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace bone
 {
@@ -18,7 +19,7 @@ namespace
 using Polygon = std::vector<Vector2>;
 
 constexpr double MinimumOverlap = 0.15;     // of the smaller piece's area
-constexpr double ReachInSlabHeights = 0.75; // a piece that overlaps none belongs to one nearer than this
+constexpr double ReachInSlabHeights = 0.75; // a piece that overlaps none may belong to one nearer than this
 constexpr int    OverlapSamples = 24;       // grid points a side
 
 double
@@ -67,79 +68,280 @@ Overlap(const std::vector<Vector2> & p, const std::vector<Vector2> & q)
   return common / std::max(1e-12, std::min(std::abs(SignedArea(p)), std::abs(SignedArea(q))));
 }
 
-using Link = std::array<int, 2>; ///< a lower and an upper piece
-
-/** Links a piece that overlaps nothing to the nearest piece of the other slice within reach. */
-void
-LinkByDistance(const std::vector<Polygon> & lower,
-               const std::vector<Polygon> & upper,
-               double                       reach,
-               std::vector<Link> &          links)
+/** A lower and an upper piece of a slab. */
+struct Link
 {
-  std::vector<char> linkedL(lower.size(), 0), linkedU(upper.size(), 0);
-  for (const Link & link : links)
-  {
-    linkedL[link[0]] = linkedU[link[1]] = 1;
-  }
-  for (std::size_t i = 0; i < lower.size(); ++i)
-  {
-    for (std::size_t j = 0; j < upper.size(); ++j)
-    {
-      if (linkedL[i] && linkedU[j])
-      {
-        continue;
-      }
-      if (Separation(lower[i], upper[j]) < reach)
-      {
-        links.push_back({ { static_cast<int>(i), static_cast<int>(j) } });
-      }
-    }
-  }
-}
-} // namespace
+  int    slab, lower, upper;
+  double separation; ///< in slab heights; negative where they overlap
+};
 
-std::vector<Group>
-MatchPieces(const std::vector<Polygon> & lower, const std::vector<Polygon> & upper, double slabHeight)
+/** Sets of numbers that can be joined. */
+class DisjointSets
 {
-  const int         nl = static_cast<int>(lower.size()), nu = static_cast<int>(upper.size());
-  std::vector<Link> links;
-  for (int i = 0; i < nl; ++i)
+public:
+  explicit DisjointSets(int count)
+    : m_Root(count)
   {
-    for (int j = 0; j < nu; ++j)
-    {
-      if (Overlap(lower[i], upper[j]) > MinimumOverlap)
-      {
-        links.push_back({ { i, j } });
-      }
-    }
+    std::iota(m_Root.begin(), m_Root.end(), 0);
   }
-  LinkByDistance(lower, upper, ReachInSlabHeights * slabHeight, links);
-  std::vector<int> root(nl + nu);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&root](int i) {
-    while (root[i] != i)
+
+  int
+  Find(int i)
+  {
+    while (m_Root[i] != i)
     {
-      i = root[i] = root[root[i]];
+      i = m_Root[i] = m_Root[m_Root[i]];
     }
     return i;
-  };
-  for (const Link & link : links)
-  {
-    root[find(nl + link[1])] = find(link[0]);
   }
-  std::vector<Group> groups;
-  std::vector<int>   groupOf(nl + nu, -1);
-  for (int i = 0; i < nl + nu; ++i)
+
+  /** False where they were one already. */
+  bool
+  Join(int i, int j)
   {
-    int & group = groupOf[find(i)];
-    if (group < 0)
+    const bool apart = Find(i) != Find(j);
+    m_Root[Find(j)] = Find(i);
+    return apart;
+  }
+
+private:
+  std::vector<int> m_Root;
+};
+
+class Matcher
+{
+public:
+  Matcher(const std::vector<std::vector<PieceOutline>> & pieces,
+          const std::vector<double> &                    heights,
+          const ContourCorrespondence *                  given)
+    : m_Pieces(pieces)
+    , m_Heights(heights)
+    , m_Given(given)
+    , m_First(pieces.size() + 1, 0)
+    , m_Bodies(0)
+  {
+    for (std::size_t k = 0; k < pieces.size(); ++k)
     {
-      group = static_cast<int>(groups.size());
-      groups.emplace_back();
+      m_First[k + 1] = m_First[k] + static_cast<int>(pieces[k].size());
     }
-    (i < nl ? groups[group].lower : groups[group].upper).push_back(i < nl ? i : i - nl);
+    m_Bodies = DisjointSets(m_First.back());
+    for (auto & linked : m_Linked)
+    {
+      linked.assign(static_cast<std::size_t>(m_First.back()), 0);
+    }
   }
-  return groups;
+
+  std::vector<std::vector<Group>>
+  Run()
+  {
+    const int slabs = static_cast<int>(m_Pieces.size()) - 1;
+    m_Links.resize(std::max(slabs, 0));
+    for (int k = 0; k < slabs; ++k)
+    {
+      IsGiven(k) ? AddGiven(k) : LinkByOverlap(k);
+    }
+    LinkByDistance();
+    std::vector<std::vector<Group>> groups;
+    for (int k = 0; k < slabs; ++k)
+    {
+      groups.push_back(GroupsOf(k));
+    }
+    return groups;
+  }
+
+private:
+  bool
+  IsGiven(int k) const
+  {
+    return m_Given != nullptr && m_Given->slabs.count(k) > 0;
+  }
+
+  const Polygon &
+  Outline(int k, int i) const
+  {
+    return m_Pieces[k][i].loops.front().points;
+  }
+
+  int
+  Size(int k) const
+  {
+    return static_cast<int>(m_Pieces[k].size());
+  }
+
+  bool
+  Add(int k, int i, int j)
+  {
+    m_Links[k].push_back({ k, i, j, 0.0 });
+    m_Linked[0][m_First[k] + i] = m_Linked[1][m_First[k + 1] + j] = 1;
+    return m_Bodies.Join(m_First[k] + i, m_First[k + 1] + j);
+  }
+
+  int
+  PieceOf(int slice, int id) const
+  {
+    for (int i = 0; i < Size(slice); ++i)
+    {
+      if (m_Pieces[slice][i].loops.front().id == id)
+      {
+        return i;
+      }
+    }
+    throw std::runtime_error(PlaceOf(slice, id) + "the correspondence names it, but it is no outer contour there");
+  }
+
+  void
+  AddGiven(int k)
+  {
+    std::array<std::vector<char>, 2> taken{ { std::vector<char>(Size(k), 0), std::vector<char>(Size(k + 1), 0) } };
+    for (const auto & group : m_Given->slabs.at(k))
+    {
+      std::array<std::vector<int>, 2> members;
+      for (int side = 0; side < 2; ++side)
+      {
+        for (int id : side == 0 ? group.lower : group.upper)
+        {
+          members[side].push_back(PieceOf(k + side, id));
+          if (taken[side][members[side].back()]++)
+          {
+            throw std::runtime_error(PlaceOf(k + side, id) + "the correspondence names it twice");
+          }
+        }
+      }
+      for (int i : members[0])
+      {
+        for (int j : members[1])
+        {
+          Add(k, i, j);
+        }
+      }
+    }
+  }
+
+  /** Pieces that overlap little are joined where one of them has no other counterpart. */
+  void
+  LinkByOverlap(int k)
+  {
+    std::vector<Link> little;
+    for (int i = 0; i < Size(k); ++i)
+    {
+      for (int j = 0; j < Size(k + 1); ++j)
+      {
+        const double overlap = Overlap(Outline(k, i), Outline(k + 1, j));
+        if (overlap > MinimumOverlap)
+        {
+          Add(k, i, j);
+        }
+        else if (overlap > 0)
+        {
+          little.push_back({ k, i, j, -overlap });
+        }
+      }
+    }
+    std::stable_sort(
+      little.begin(), little.end(), [](const Link & a, const Link & b) { return a.separation < b.separation; });
+    for (const Link & link : little)
+    {
+      if (!Above(link) || !Below(link))
+      {
+        Add(k, link.lower, link.upper);
+      }
+    }
+  }
+
+  /** Whether the lower piece of a link has a counterpart above; the upper one below. */
+  bool
+  Above(const Link & link) const
+  {
+    return m_Linked[0][m_First[link.slab] + link.lower];
+  }
+  bool
+  Below(const Link & link) const
+  {
+    return m_Linked[1][m_First[link.slab + 1] + link.upper];
+  }
+
+  void
+  LinkByDistance()
+  {
+    std::vector<Link> candidates;
+    for (int k = 0; k + 1 < static_cast<int>(m_Pieces.size()); ++k)
+    {
+      for (int i = 0; i < Size(k) && !IsGiven(k); ++i)
+      {
+        for (int j = 0; j < Size(k + 1); ++j)
+        {
+          Link link{ k, i, j, 0.0 };
+          if (Above(link) && Below(link))
+          {
+            continue;
+          }
+          link.separation = Separation(Outline(k, i), Outline(k + 1, j)) / (m_Heights[k + 1] - m_Heights[k]);
+          if (link.separation < ReachInSlabHeights)
+          {
+            candidates.push_back(link);
+          }
+        }
+      }
+    }
+    std::stable_sort(
+      candidates.begin(), candidates.end(), [](const Link & a, const Link & b) { return a.separation < b.separation; });
+    for (const Link & link : candidates)
+    {
+      if (!Above(link) && !Below(link))
+      {
+        Add(link.slab, link.lower, link.upper);
+      }
+    }
+    for (const Link & link : candidates)
+    {
+      const int lower = m_First[link.slab] + link.lower, upper = m_First[link.slab + 1] + link.upper;
+      if (Above(link) != Below(link) && m_Bodies.Find(lower) != m_Bodies.Find(upper))
+      {
+        Add(link.slab, link.lower, link.upper);
+      }
+    }
+  }
+
+  /** What hangs together in slab k. */
+  std::vector<Group>
+  GroupsOf(int k) const
+  {
+    DisjointSets joined(Size(k) + Size(k + 1));
+    for (const Link & link : m_Links[k])
+    {
+      joined.Join(link.lower, Size(k) + link.upper);
+    }
+    std::vector<Group> groups;
+    std::vector<int>   groupOf(static_cast<std::size_t>(Size(k) + Size(k + 1)), -1);
+    for (int i = 0; i < Size(k) + Size(k + 1); ++i)
+    {
+      int & group = groupOf[joined.Find(i)];
+      if (group < 0)
+      {
+        group = static_cast<int>(groups.size());
+        groups.emplace_back();
+      }
+      (i < Size(k) ? groups[group].lower : groups[group].upper).push_back(i < Size(k) ? i : i - Size(k));
+    }
+    return groups;
+  }
+
+  const std::vector<std::vector<PieceOutline>> & m_Pieces;
+  const std::vector<double> &                    m_Heights;
+  const ContourCorrespondence *                  m_Given;
+  std::vector<int>                               m_First;  ///< number of the first piece of each slice
+  DisjointSets                                   m_Bodies; ///< of all pieces
+  std::array<std::vector<char>, 2>               m_Linked; ///< of all pieces: above, below
+  std::vector<std::vector<Link>>                 m_Links;  ///< of each slab
+};
+} // namespace
+
+std::vector<std::vector<Group>>
+MatchPieces(const std::vector<std::vector<PieceOutline>> & pieces,
+            const std::vector<double> &                    heights,
+            const ContourCorrespondence *                  given)
+{
+  return Matcher(pieces, heights, given).Run();
 }
 } // namespace tiling
 } // namespace bone

@@ -32,21 +32,6 @@ BuildSection(const ContourStack & stack,
 /** The outer contour of a section in the plane. */
 std::vector<Vector2>
 OuterPolygon(const std::vector<Vector2> & plane, const Section & section);
-
-/** Which pieces of a slice belong to which of the next. */
-struct Group
-{
-  std::vector<int> lower;
-  std::vector<int> upper;
-};
-
-/** Corresponding pieces of two slices by overlap of their outer contours, and by distance where a piece overlaps none
- * (paper 2.5). A group is all that hangs together by such links, any number on both slices; a piece without counterpart is
- * a group of its own. */
-std::vector<Group>
-MatchPieces(const std::vector<std::vector<Vector2>> & lower,
-            const std::vector<std::vector<Vector2>> & upper,
-            double                                    slabHeight);
 } // namespace tiling
 } // namespace bone
 

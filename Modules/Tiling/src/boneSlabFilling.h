@@ -5,6 +5,7 @@
 #define boneSlabFilling_h
 
 #include "boneContourStack.h"
+#include "bonePieceMatching.h"
 #include "boneRingKnit.h"
 #include "boneSectionBuilder.h"
 

@@ -242,6 +242,29 @@ TEST(ContourTilingMeshSource, CorrespondingPiecesThatCannotBeJoinedEndAndAreRepo
               testing::ThrowsMessage<itk::ExceptionObject>(testing::HasSubstr("cannot be joined to it")));
 }
 
+TEST(ContourTilingMeshSource, ABranchThatBeginsBesideTheBodyIsNoHandle)
+{
+  // It begins on the second slice, within reach of the body below but over none of it, and runs into the body above.
+  const Loop                           body{ { 0, 0 }, 8, 8, 0, 1 }, branch{ { 12, 0 }, 3, 3, 0, 1 }, both{ { 3, 0 }, 14, 9, 0, 1 };
+  const std::vector<std::vector<Loop>> slices = { { body }, { body, branch }, { both }, { both } };
+  const auto                           validation = bone::ValidateMesh(Tile(MakeStack(slices, 3.0)));
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 1);
+  EXPECT_EQ(validation.boundaryEuler, 2);
+}
+
+TEST(ContourTilingMeshSource, DanglingEndsWithinReachAreJoined)
+{
+  // A ring whose left limb leans so far that it overlaps nothing in the middle slab: one handle, as of a ring.
+  const Loop                           top{ { 0, 0 }, 22, 6, 0, 1 }, right{ { 14, 0 }, 4, 4, 0, 1 };
+  const Loop                           low{ { -12, 0 }, 2, 4, 0, 1 }, high{ { -17, 0 }, 2, 4, 0, 1 };
+  const std::vector<std::vector<Loop>> slices = { { top }, { low, right }, { high, right }, { top } };
+  const auto                           validation = bone::ValidateMesh(Tile(MakeStack(slices, 3.0)));
+  EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  EXPECT_EQ(validation.components, 1);
+  EXPECT_EQ(validation.boundaryEuler, 0);
+}
+
 TEST(ContourTilingMeshSource, ASocketEndsInADome)
 {
   // Solid below, a hole above: its floor is neither on the lower slice nor on the upper one.
