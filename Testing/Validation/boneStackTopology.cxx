@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -21,6 +22,8 @@ namespace
 using Mask = itk::Image<unsigned char, 3>;
 using Labels = itk::Image<unsigned int, 3>;
 using Polygon = std::vector<Vector2>;
+
+constexpr double SpeckShare = 0.05; ///< of the largest part in which two pieces overlap
 
 struct Grid
 {
@@ -45,7 +48,9 @@ GridOf(const ContourStack & stack, double pixel)
     }
   }
   const Vector2 size = (high - low) / pixel;
-  return { low - Vector2::Constant(1.5 * pixel), pixel, static_cast<int>(size.x()) + 4, static_cast<int>(size.y()) + 4 };
+  return {
+    low - Vector2::Constant(1.5 * pixel), pixel, static_cast<int>(size.x()) + 4, static_cast<int>(size.y()) + 4
+  };
 }
 
 /** Writes the contour's region to the pixels whose centre lies inside. */
@@ -130,10 +135,10 @@ Complement(const Mask * mask)
   other->SetRegions(mask->GetLargestPossibleRegion());
   other->Allocate();
   const auto n = mask->GetLargestPossibleRegion().GetNumberOfPixels();
-  std::transform(
-    mask->GetBufferPointer(), mask->GetBufferPointer() + n, other->GetBufferPointer(), [](unsigned char v) {
-      return v == 0;
-    });
+  std::transform(mask->GetBufferPointer(),
+                 mask->GetBufferPointer() + n,
+                 other->GetBufferPointer(),
+                 [](unsigned char v) { return v == 0; });
   return other;
 }
 
@@ -170,6 +175,91 @@ EulerOfMask(const Mask * mask)
     euler += 1 - x - y - z + xy + xz + yz - (xy && xz && yz && p[i + step[0] + step[1] + step[2]]);
   }
   return euler;
+}
+
+/** Labels the pixels of a slice that touch along edges, from 1; 0 is outside. Returns the number of parts. */
+int
+LabelSlice(const std::vector<unsigned char> & slice, std::ptrdiff_t nx, std::vector<int> & label)
+{
+  int parts = 0;
+  label.assign(slice.size(), 0);
+  std::vector<std::ptrdiff_t> front;
+  for (std::size_t seed = 0; seed < slice.size(); ++seed)
+  {
+    if (!slice[seed] || label[seed])
+    {
+      continue;
+    }
+    label[seed] = ++parts;
+    front.push_back(static_cast<std::ptrdiff_t>(seed));
+    while (!front.empty())
+    {
+      const std::ptrdiff_t here = front.back();
+      front.pop_back();
+      for (const std::ptrdiff_t next : { here - 1, here + 1, here - nx, here + nx })
+      {
+        if (slice[next] && !label[next]) // the rim is empty
+        {
+          label[next] = parts;
+          front.push_back(next);
+        }
+      }
+    }
+  }
+  return parts;
+}
+
+/** Euler characteristic of the specks of overlap of two slices: parts much smaller than another part of the overlap of
+ * the same two pieces. */
+long
+EulerOfSpecks(const std::vector<unsigned char> & below, const std::vector<unsigned char> & above, std::ptrdiff_t nx)
+{
+  std::vector<unsigned char> both(below.size());
+  std::transform(
+    below.begin(), below.end(), above.begin(), both.begin(), [](unsigned char a, unsigned char b) { return a && b; });
+  std::vector<int> lower, upper, part;
+  LabelSlice(below, nx, lower);
+  LabelSlice(above, nx, upper);
+  const int                          parts = LabelSlice(both, nx, part);
+  std::vector<long>                  euler(parts + 1, 0), size(parts + 1, 0);
+  std::vector<std::array<int, 2>>    pair(parts + 1);
+  std::map<std::array<int, 2>, long> largest;
+  for (std::size_t i = 0; i < part.size(); ++i)
+  {
+    const int p = part[i];
+    if (p == 0)
+    {
+      continue;
+    }
+    const bool x = part[i + 1] == p, y = part[i + nx] == p, xy = x && y && part[i + nx + 1] == p;
+    euler[p] += 1 - x - y + xy;
+    pair[p] = { { lower[i], upper[i] } };
+    largest[pair[p]] = std::max(largest[pair[p]], ++size[p]);
+  }
+  long sum = 0;
+  for (int p = 1; p <= parts; ++p)
+  {
+    sum += static_cast<double>(size[p]) < SpeckShare * static_cast<double>(largest[pair[p]]) ? euler[p] : 0;
+  }
+  return sum;
+}
+
+long
+EulerOfSpecks(const Mask * mask)
+{
+  const auto                 size = mask->GetLargestPossibleRegion().GetSize();
+  const auto                 area = static_cast<std::ptrdiff_t>(size[0] * size[1]);
+  const unsigned char *      p = mask->GetBufferPointer();
+  std::vector<unsigned char> below(p, p + area);
+  long                       sum = 0;
+  for (std::size_t k = 1; k < size[2]; ++k)
+  {
+    p += area;
+    const std::vector<unsigned char> above(p, p + area);
+    sum += EulerOfSpecks(below, above, static_cast<std::ptrdiff_t>(size[0]));
+    below = above;
+  }
+  return sum;
 }
 
 long
@@ -236,8 +326,7 @@ operator<<(std::ostream & os, const BodyTopology & topology)
   return os << topology.components << '/' << topology.handles << '/' << topology.voids;
 }
 
-BodyTopology
-TopologyOfStack(const ContourStack & stack, int least, double pixel)
+StackTopology::StackTopology(const ContourStack & stack, int least, double pixel)
 {
   const Mask::Pointer   mask = MaskOf(stack, least, pixel);
   int                   outside = 0;
@@ -252,11 +341,10 @@ TopologyOfStack(const ContourStack & stack, int least, double pixel)
                    [open](unsigned int label) { return label != open; });
     outside = 1;
   }
-  BodyTopology topology;
   Label(mask, false, topology.components);
   topology.voids = outside - 1;
   topology.handles = topology.components + topology.voids - static_cast<int>(EulerOfMask(mask));
-  return topology;
+  handlesWithoutSpecks = topology.handles - static_cast<int>(EulerOfSpecks(mask));
 }
 
 BodyTopology

@@ -31,8 +31,15 @@ operator<<(std::ostream & os, const BodyTopology & topology);
 /** The regions from `least` inward of a stack of contours, each slice thickened to the middle of its neighbours: two
  * slices are joined where they overlap, and nowhere else. Of the whole body (least = 1) voids are filled first, as the
  * tiling does. Decided on pixels of the given size (mm). */
-BodyTopology
-TopologyOfStack(const ContourStack & stack, int least, double pixel);
+struct StackTopology
+{
+  BodyTopology topology;
+  /** Handles that are left where, of the parts in which two pieces overlap, those under 5 % of the largest do not
+   * count: specks, where a thin wall leans. */
+  int handlesWithoutSpecks{ 0 };
+
+  StackTopology(const ContourStack & stack, int least, double pixel);
+};
 
 /** The regions from `least` inward of a mesh. */
 BodyTopology

@@ -62,14 +62,15 @@ main(int argc, char * argv[])
               << mesh.tetrahedra.size() << "\nslabs " << report.slabs << "\nbranchings " << report.branchings
               << "\nlayer_branchings " << report.layerBranchings << "\nfilled "
               << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
-              << "\nparted " << report.partedGroups
-              << "\npatches " << report.patches << "\nleast_angle " << least << "\nmean_angle "
-              << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
+              << "\nparted " << report.partedGroups << "\npatches " << report.patches << "\nleast_angle " << least
+              << "\nmean_angle " << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
     constexpr double pixel = 0.2; // mm
     for (int region = 1; region <= 3; ++region)
     {
-      std::cout << "topology_mesh_" << region << ' ' << bone::TopologyOfMesh(mesh, region) << "\ntopology_stack_" << region
-                << ' ' << bone::TopologyOfStack(*stack, region, pixel) << '\n';
+      const bone::StackTopology given(*stack, region, pixel);
+      std::cout << "mesh_topology_" << region << ' ' << bone::TopologyOfMesh(mesh, region) << "\nstack_topology_"
+                << region << ' ' << given.topology << "\nhandles_" << region << ' ' << given.handlesWithoutSpecks
+                << '\n';
     }
     bone::WriteMeshArrays(mesh, argv[argc - 1]);
   }

@@ -33,15 +33,15 @@ struct SlabFilling
  *    triangle. Where regions lie on top of each other that may not touch (trabecular bone below nothing), or pieces
  * that do not belong together, further layers of prisms with the regions in between part them. Every step is a terrace
  *    now; the mesh is valid, and every interface a 2-manifold, by construction.
- * 3. Where the surfaces should run is known from the contours' distances (\ref FindSlabSurface). The vertices in between
- *    are collapsed onto those of the slices wherever orientation (exact) and the link condition for all regions, outside
- *    included, allow, and surfaces stay within 0.12 of the slab's height of where they should run: terraces become slopes
- *    between the contours, and domes over what begins or ends. As outside is filled with tetrahedra too, no surface can
- *    pass through another.
+ * 3. Where the surfaces should run is known from the contours' distances (\ref FindSlabSurface). The vertices in
+ * between are collapsed onto those of the slices wherever orientation (exact) and the link condition for all regions,
+ * outside included, allow, and surfaces stay within 0.12 of the slab's height of where they should run: terraces become
+ * slopes between the contours, and domes over what begins or ends. As outside is filled with tetrahedra too, no surface
+ * can pass through another.
  *
- * Vertices that could not be collapsed are moved to where they should be and stay. Pieces of a group that do not overlap
- * however the slices are moved end and begin there; the group is named in `parted`. Throws std::runtime_error where the
- * contours are too close to be told apart. */
+ * Vertices that could not be collapsed are moved to where they should be and stay. Pieces of a group that do not
+ * overlap however the slices are moved end and begin there; the group is named in `parted`. Throws std::runtime_error
+ * where the contours are too close to be told apart. */
 SlabFilling
 FillSlab(const ContourStack &         stack,
          const std::vector<Section> & lower,

@@ -245,7 +245,7 @@ TEST(ContourTilingMeshSource, CorrespondingPiecesThatCannotBeJoinedEndAndAreRepo
 TEST(ContourTilingMeshSource, ABranchThatBeginsBesideTheBodyIsNoHandle)
 {
   // It begins on the second slice, within reach of the body below but over none of it, and runs into the body above.
-  const Loop                           body{ { 0, 0 }, 8, 8, 0, 1 }, branch{ { 12, 0 }, 3, 3, 0, 1 }, both{ { 3, 0 }, 14, 9, 0, 1 };
+  const Loop body{ { 0, 0 }, 8, 8, 0, 1 }, branch{ { 12, 0 }, 3, 3, 0, 1 }, both{ { 3, 0 }, 14, 9, 0, 1 };
   const std::vector<std::vector<Loop>> slices = { { body }, { body, branch }, { both }, { both } };
   const auto                           validation = bone::ValidateMesh(Tile(MakeStack(slices, 3.0)));
   EXPECT_TRUE(validation.IsValid()) << validation.Summary();
