@@ -57,6 +57,9 @@ public:
   {
     return m_Parallel ? 1.0 : Direction(column, row).norm();
   }
+  /** Of a row's pixels [firstColumn, endColumn), in single precision. */
+  void
+  StepLengths(int row, int firstColumn, int endColumn, float * lengths) const;
   double
   DetectorDepth() const
   {

@@ -19,7 +19,7 @@
 //
 // The adjoint sums the same functions over the pixels of each row, then by levels over the rows.
 
-#include "boneDerivativeMaps.hxx"
+#include "boneModeTables.hxx"
 
 namespace bone
 {
@@ -27,81 +27,6 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-/** Functions of eta with coefficients by level, evaluated all at once for a row. */
-template <typename TReal>
-class RowTable
-{
-public:
-  /** In `memory`, of RowTableSize(count, levels) numbers. */
-  RowTable(TReal * memory, int count, int levels)
-    : m_Blocks((count + lanes - 1) / lanes)
-    , m_Count(count)
-    , m_Levels(levels)
-    , m_Table(memory)
-  {}
-
-  /** Takes one member of a group's table, [level][count]. */
-  void
-  Set(const Group * table, int member)
-  {
-    for (int level = 0; level < m_Levels; ++level, table += m_Count)
-    {
-      TReal * to = m_Table + level * m_Blocks * lanes;
-      for (int i = 0; i < m_Count; ++i)
-      {
-        to[i] = static_cast<TReal>(table[i][member]);
-      }
-      for (int i = m_Count; i < m_Blocks * lanes; ++i)
-      {
-        to[i] = TReal(0);
-      }
-    }
-  }
-
-  void
-  At(TReal eta)
-  {
-    using Lanes = typename Vector<TReal>::Type;
-    const int stride = m_Blocks * lanes;
-    for (int i = 0; i < stride; i += lanes)
-    {
-      Lanes value, next;
-      __builtin_memcpy(&value, m_Table + (m_Levels - 1) * stride + i, sizeof(value));
-      for (int level = m_Levels - 2; level >= 0; --level)
-      {
-        __builtin_memcpy(&next, m_Table + level * stride + i, sizeof(next));
-        value = value * eta + next;
-      }
-      __builtin_memcpy(m_Table + m_Levels * stride + i, &value, sizeof(value));
-    }
-  }
-  const TReal *
-  Values() const
-  {
-    return m_Table + m_Levels * m_Blocks * lanes;
-  }
-
-private:
-  int     m_Blocks;
-  int     m_Count;
-  int     m_Levels;
-  TReal * m_Table; ///< the levels, then the values
-};
-
-template <int N>
-inline void
-SetMonomials(const double * const (&coefficients)[groupSize],
-             Group              scale,
-             Group              offset,
-             const GroupFrame & frame,
-             Monomials<N> &     monomials)
-{
-  Group control[CoefficientCount(N)];
-  LoadControl<N>(coefficients, scale, offset, control);
-  int exponent[4] = { 0, 0, 0, 0 };
-  Blossom<N, N>::Run(control, frame.mu, 0, exponent, monomials);
-}
-
 /** The density of a cell and its rates along X and Y, in this order, in a group's table. */
 template <int N>
 struct DensityTable
@@ -116,9 +41,10 @@ struct DensityTable
   void
   Set(const CellGroup & group, const GroupFrame & frame)
   {
+    Group control[CoefficientCount(N)];
+    LoadControl<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, control);
     Monomials<N> monomials;
-    SetMonomials<N>(
-      group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, frame, monomials);
+    SetMonomials<N>(control, frame.mu, monomials);
     SetLevels<N>(monomials, frame.kappa, levels[0], count);
     if constexpr (N > 0)
     {
@@ -297,8 +223,8 @@ inline void
 ForEachRay(const Frame & frame, const DensityTable<N> & density, int member, bool withShape, TConsumer & consumer)
 {
   using Lanes = typename Vector<TReal>::Type;
-  TReal           memory[RowTableSize(DensityTable<N>::count, N + 1)];
-  RowTable<TReal> table(memory, DensityTable<N>::count, N + 1);
+  TReal                  memory[RowTableSize(DensityTable<N>::count, N + 1)];
+  RowTable<TReal, N + 1> table(memory, DensityTable<N>::count);
   table.Set(density.levels[0], member);
   RayStarts<TReal> rays;
   rays.kappa = static_cast<TReal>(frame.kappa);
@@ -344,65 +270,6 @@ ForEachRay(const Frame & frame, const DensityTable<N> & density, int member, boo
   }
 }
 
-/** The modes' tables of a group of cells, in the task's scratch memory. */
-template <int N>
-struct ModeTables
-{
-  static constexpr int each = PlaneCount(N);
-
-  Group * density; ///< [level][mode][moment]
-  Group * shape;   ///< [level][mode][function]
-  void *  rows;    ///< for the row tables of one member
-
-  ModeTables(const Derivatives & derivatives)
-    : density(static_cast<Group *>(derivatives.scratch))
-    , shape(density + (N + 1) * each * derivatives.densityModes)
-    , rows(shape + shapeLevels * shapeFunctions * derivatives.shapeModes)
-  {}
-
-  void
-  Set(const CellGroup & group, const GroupFrame & frame, const Derivatives & derivatives)
-  {
-    for (int m = 0; m < derivatives.densityModes; ++m)
-    {
-      for (int g = 0; g < group.count; ++g)
-      {
-        const double * const start = derivatives.density[m] + derivatives.coefficient[g];
-        for (int p = 0; p < CoefficientCount(N); p += lanes)
-        {
-          __builtin_prefetch(start + p);
-        }
-      }
-    }
-    for (int m = 0; m < derivatives.densityModes; ++m)
-    {
-      const double * coefficients[groupSize];
-      for (int g = 0; g < groupSize; ++g)
-      {
-        coefficients[g] = derivatives.density[m] + derivatives.coefficient[g < group.count ? g : 0];
-      }
-      Monomials<N> monomials;
-      SetMonomials<N>(coefficients, frame.halfDepth * group.scale, Group{}, frame, monomials);
-      SetLevels<N>(monomials, frame.kappa, density + m * each, each * derivatives.densityModes);
-    }
-    const VertexMotion motion(frame, group.parallel);
-    for (int m = 0; m < derivatives.shapeModes; ++m)
-    {
-      Group vertex[4][3] = {};
-      for (int g = 0; g < group.count; ++g)
-      {
-        for (int i = 0; i < 12; ++i)
-        {
-          vertex[i / 3][i % 3][g] = derivatives.shape[g][i / 3][3 * m + i % 3];
-        }
-      }
-      AffineField field;
-      SetField(frame, motion, vertex, field);
-      SetShapeLevels(field, frame.kappa, shape + m * shapeFunctions, shapeFunctions * derivatives.shapeModes);
-    }
-  }
-};
-
 /** Adds a cell's integrals and derivatives to the planes. */
 template <typename TReal, int N>
 class PlaneAdder
@@ -410,24 +277,28 @@ class PlaneAdder
 public:
   using Lanes = typename Vector<TReal>::Type;
 
-  PlaneAdder(const Derivatives & derivatives, const Band & band, const ModeTables<N> & tables)
+  /** For a member of a group, whose tables are set. */
+  PlaneAdder(const Derivatives &         derivatives,
+             const Band &                band,
+             const ModeTables<N> &       tables,
+             const GroupFrame &          frame,
+             const VertexMotion<Group> & motion,
+             int                         member)
     : m_Derivatives(derivatives)
     , m_Band(band)
-    , m_Density(static_cast<TReal *>(tables.rows), PlaneCount(N) * derivatives.densityModes, N + 1)
-    , m_Shape(static_cast<TReal *>(tables.rows) + RowTableSize(PlaneCount(N) * derivatives.densityModes, N + 1),
-              shapeFunctions * derivatives.shapeModes,
-              shapeLevels)
-  {}
-
-  void
-  Set(const ModeTables<N> & tables, const GroupFrame & frame, const VertexMotion & motion, int member)
+    , m_Density(Rows(tables, member), PlaneCount(N) * derivatives.densityModes)
+    , m_Shape(Rows(tables, member) + RowTableSize(PlaneCount(N) * derivatives.densityModes, N + 1),
+              shapeFunctions * derivatives.shapeModes)
+    , m_PerX(static_cast<TReal>(motion.perX[member]))
+    , m_PerY(static_cast<TReal>(motion.perY[member]))
+    , m_Offset(static_cast<TReal>(frame.s0[member] - derivatives.middle))
+    , m_PerZ(static_cast<TReal>(frame.halfDepth[member]))
   {
-    m_Density.Set(tables.density, member);
-    m_Shape.Set(tables.shape, member);
-    m_PerX = static_cast<TReal>(motion.perX[member]);
-    m_PerY = static_cast<TReal>(motion.perY[member]);
-    m_Offset = static_cast<TReal>(frame.s0[member] - m_Derivatives.middle);
-    m_PerZ = static_cast<TReal>(frame.halfDepth[member]);
+    if constexpr (std::is_same_v<TReal, double>)
+    {
+      m_Density.Set(tables.density, member);
+      m_Shape.Set(tables.shape, member);
+    }
   }
 
   void
@@ -442,44 +313,58 @@ public:
   void
   Take(int row, int column, const RayFunctions<TReal, N> & functions)
   {
-    float * out = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
+    const std::ptrdiff_t plane = m_Derivatives.plane;
+    const int            shapeModes = m_Derivatives.shapeModes, densityModes = m_Derivatives.densityModes;
+    float *              out = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
     Accumulate(out, functions.value);
+    out += plane;
     if (m_Derivatives.pose)
     {
       const Lanes x = m_PerX * functions.gx, y = m_PerY * functions.gy;
-      Accumulate(Next(out), x);
-      Accumulate(Next(out), y);
-      Accumulate(Next(out), m_Offset * x + m_PerZ * (m_PerX * functions.gxz));
-      Accumulate(Next(out), m_Offset * y + m_PerZ * (m_PerY * functions.gyz));
+      Accumulate(out, x);
+      Accumulate(out + plane, y);
+      Accumulate(out + 2 * plane, m_Offset * x + m_PerZ * (m_PerX * functions.gxz));
+      Accumulate(out + 3 * plane, m_Offset * y + m_PerZ * (m_PerY * functions.gyz));
+      out += posePlanes * plane;
     }
-    AddModes<shapeFunctions>(m_Shape.Values(), functions.shape, m_Derivatives.shapeModes, out);
-    AddModes<PlaneCount(N)>(m_Density.Values(), functions.moment, m_Derivatives.densityModes, out);
+    AddModes<shapeFunctions>(m_Shape.Values(), functions.shape, shapeModes, plane, out);
+    AddModes<PlaneCount(N)>(m_Density.Values(), functions.moment, densityModes, plane, out + shapeModes * plane);
   }
 
 private:
-  float *
-  Next(float *& out) const
+  static TReal *
+  Rows(const ModeTables<N> & tables, int member)
   {
-    return out += m_Derivatives.plane;
+    if constexpr (std::is_same_v<TReal, double>)
+    {
+      return tables.exactRows;
+    }
+    else
+    {
+      return tables.rows + member * tables.member;
+    }
   }
   template <int TCount>
-  void
-  AddModes(const TReal * factors, const Lanes (&terms)[TCount], int modes, float *& out) const
+  static void
+  AddModes(const TReal * factors, const Lanes (&terms)[TCount], int modes, std::ptrdiff_t plane, float * out)
   {
-    for (int m = 0; m < modes; ++m, factors += TCount)
+    for (int m = 0; m < modes; ++m, factors += TCount, out += plane)
     {
-      Lanes sum{};
-      Repeat<TCount>([&](int q) { sum += factors[q] * terms[q]; });
-      Accumulate(Next(out), sum);
+      // Two sums, as each waits for the term before.
+      Lanes even{}, odd{};
+      Repeat<TCount>([&](int q) { (q % 2 == 0 ? even : odd) += factors[q] * terms[q]; });
+      Accumulate(out, even + odd);
     }
   }
 
   const Derivatives & m_Derivatives;
   const Band &        m_Band;
-  RowTable<TReal>     m_Density;
-  RowTable<TReal>     m_Shape;
-  TReal               m_PerX, m_PerY;   ///< see VertexMotion
-  TReal               m_Offset, m_PerZ; ///< s - middle = offset + perZ z
+
+  RowTable<TReal, N + 1>       m_Density;
+  RowTable<TReal, shapeLevels> m_Shape;
+
+  TReal m_PerX, m_PerY;   ///< see VertexMotion
+  TReal m_Offset, m_PerZ; ///< s - middle = offset + perZ z
 };
 
 /** Calls function(member, frame, exact) for the cells of the group that the band sees; `exact` where they need double
@@ -509,20 +394,26 @@ DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & 
   DensityTable<N> density;
   density.Set(group, groupFrame);
   ModeTables<N> tables(derivatives);
-  tables.Set(group, groupFrame, derivatives);
-  const VertexMotion motion(groupFrame, group.parallel);
-  const bool         withShape = derivatives.pose || derivatives.shapeModes > 0;
+  tables.SetShape(group, groupFrame, derivatives);
+  tables.SetDensity(group, groupFrame, derivatives);
+  ModeTables<N>::PrefetchNext(derivatives);
+  bool                      exactSet = false;
+  const VertexMotion<Group> motion = MotionOf(groupFrame, group.parallel);
+  const bool                withShape = derivatives.pose || derivatives.shapeModes > 0;
   ForEachSeen<N>(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
     if (exact)
     {
-      PlaneAdder<double, N> adder(derivatives, band, tables);
-      adder.Set(tables, groupFrame, motion, member);
+      if (!exactSet)
+      {
+        tables.SetExact(group, groupFrame, derivatives);
+        exactSet = true;
+      }
+      PlaneAdder<double, N> adder(derivatives, band, tables, groupFrame, motion, member);
       ForEachRay<double, N>(frame, density, member, withShape, adder);
     }
     else
     {
-      PlaneAdder<float, N> adder(derivatives, band, tables);
-      adder.Set(tables, groupFrame, motion, member);
+      PlaneAdder<float, N> adder(derivatives, band, tables, groupFrame, motion, member);
       ForEachRay<float, N>(frame, density, member, withShape, adder);
     }
   });
@@ -665,9 +556,9 @@ AdjoinOfDegree(CellGroup & group, const Adjoint & adjoint, const Band & band)
   Group basis[CoefficientCount(N)] = {}, vertex[4][3];
   int   exponent[4] = { 0, 0, 0, 0 };
   BlossomAdjoint<N, N>::Run(basis, groupFrame.mu, 0, exponent, monomials);
-  AffineField field;
+  AffineField<Group> field;
   SetShapeLevelsAdjoint(sums.shape, groupFrame.kappa, field);
-  SetFieldAdjoint(groupFrame, VertexMotion(groupFrame, group.parallel), field, vertex);
+  SetFieldAdjoint(groupFrame, MotionOf(groupFrame, group.parallel), field, vertex);
   for (int g = 0; g < group.count; ++g)
   {
     for (int p = 0; p < CoefficientCount(N); ++p)

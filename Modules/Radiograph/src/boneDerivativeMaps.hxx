@@ -11,25 +11,6 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-/** function(0), ..., function(TCount - 1), unrolled where it is short. */
-template <int TCount, int TFirst = 0, typename TFunction>
-inline __attribute__((always_inline)) void
-Repeat(const TFunction & function)
-{
-  if constexpr (TCount > 21)
-  {
-    for (int i = 0; i < TCount; ++i)
-    {
-      function(i);
-    }
-  }
-  else if constexpr (TFirst < TCount)
-  {
-    function(TFirst);
-    Repeat<TCount, TFirst + 1>(function);
-  }
-}
-
 /** Products X^a z^k with a + k <= N: by a, then by k. */
 template <int N>
 struct PlaneBasis
@@ -77,19 +58,6 @@ struct PlaneBasis
   }
 };
 
-/** Multiplies a polynomial in z by (1 + kappa z)^times, dropping what would exceed its degree: there is nothing. */
-template <int N>
-inline void
-Magnify(Group kappa, int times, Group (&inZ)[N + 1])
-{
-  for (; times > 0; --times)
-  {
-    for (int k = N; k > 0; --k)
-    {
-      inZ[k] += kappa * inZ[k - 1];
-    }
-  }
-}
 template <int N>
 inline void
 MagnifyAdjoint(Group kappa, int times, Group (&inZ)[N + 1])
@@ -104,29 +72,26 @@ MagnifyAdjoint(Group kappa, int times, Group (&inZ)[N + 1])
 }
 
 /** The coefficients by moment, levels 0..N of the powers of eta, `stride` apart. */
-template <int N>
+template <int N, typename TLanes>
 inline void
-SetLevels(const Monomials<N> & monomials, Group kappa, Group * levels, int stride)
+SetLevels(const Monomials<N, TLanes> & monomials, TLanes kappa, TLanes * levels, int stride)
 {
-  for (int b = 0; b <= N; ++b)
-  {
-    for (int a = 0; a <= N; ++a)
-    {
-      Group inZ[N + 1] = {};
-      for (int k = 0; k <= N - a - b; ++k)
-      {
-        inZ[k] = monomials.q[a][b][k];
-      }
+  RepeatDegrees<N + 1>([&](int b) __attribute__((always_inline)) {
+    RepeatDegrees<N + 1>([&](int a) __attribute__((always_inline)) {
+      TLanes inZ[N + 1] = {};
       if (a + b <= N)
       {
+        SetInZ<N>(monomials, a, b, inZ);
         Magnify<N>(kappa, b, inZ);
       }
-      for (int k = 0; k <= N - a; ++k)
-      {
-        levels[b * stride + PlaneBasis<N>::At(a, k)] = inZ[k];
-      }
-    }
-  }
+      RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) {
+        if (a + k <= N)
+        {
+          levels[b * stride + PlaneBasis<N>::At(a, k)] = inZ[k];
+        }
+      });
+    });
+  });
 }
 
 /** The transpose. */
@@ -182,7 +147,7 @@ struct BlossomAdjoint<N, 0>
   static void
   Run(Group * out, const Group (&)[4][4], int, int (&exponent)[4], const Monomials<N> & sums)
   {
-    out[0] += Multinomial<N>(exponent) * sums.q[exponent[1]][exponent[2]][exponent[3]];
+    out[0] += multinomials<N>.of[exponent[1]][exponent[2]][exponent[3]] * sums.q[exponent[1]][exponent[2]][exponent[3]];
   }
 };
 
@@ -206,47 +171,58 @@ Growth(const GroupFrame & frame)
 }
 
 /** From a vertex's displacement as (s, column s, row s) (parallel beam: (s, column, row)) to the frame's X, Y, z. */
+template <typename TLanes>
 struct VertexMotion
 {
-  Group perX, perY, perZ;
-  Group c0, r0; ///< what a step of s takes of column s and row s
-
-  VertexMotion(const GroupFrame & frame, bool parallel)
-    : perX(1.0 / (parallel ? frame.halfWidth : frame.s0 * frame.halfWidth))
-    , perY(1.0 / (parallel ? frame.halfHeight : frame.s0 * frame.halfHeight))
-    , perZ(1.0 / frame.halfDepth)
-    , c0(parallel ? Group{} : frame.c0)
-    , r0(parallel ? Group{} : frame.r0)
-  {}
+  TLanes perX, perY, perZ;
+  TLanes c0, r0; ///< what a step of s takes of column s and row s
 };
+
+inline VertexMotion<Group>
+MotionOf(const GroupFrame & frame, bool parallel)
+{
+  return { 1.0 / (parallel ? frame.halfWidth : frame.s0 * frame.halfWidth),
+           1.0 / (parallel ? frame.halfHeight : frame.s0 * frame.halfHeight),
+           1.0 / frame.halfDepth,
+           parallel ? Group{} : frame.c0,
+           parallel ? Group{} : frame.r0 };
+}
 
 /** A displacement in the frame, (X, Y, z), as an affine function of (1, X, Y, z). */
+template <typename TLanes>
 struct AffineField
 {
-  Group of[3][4];
+  TLanes of[3][4];
 };
 
+template <typename TLanes>
 inline void
-SetField(const GroupFrame & frame, const VertexMotion & motion, const Group (&vertex)[4][3], AffineField & field)
+SetField(const TLanes (&mu)[4][4],
+         const VertexMotion<TLanes> & motion,
+         const TLanes (&vertex)[4][3],
+         AffineField<TLanes> & field)
 {
-  field = {};
   for (int j = 0; j < 4; ++j)
   {
-    const Group moved[3] = { motion.perX * (vertex[j][1] - motion.c0 * vertex[j][0]),
-                             motion.perY * (vertex[j][2] - motion.r0 * vertex[j][0]),
-                             motion.perZ * vertex[j][0] };
+    const TLanes moved[3] = { motion.perX * (vertex[j][1] - motion.c0 * vertex[j][0]),
+                              motion.perY * (vertex[j][2] - motion.r0 * vertex[j][0]),
+                              motion.perZ * vertex[j][0] };
     for (int axis = 0; axis < 3; ++axis)
     {
       for (int k = 0; k < 4; ++k)
       {
-        field.of[axis][k] += frame.mu[k][j] * moved[axis];
+        const TLanes part = mu[k][j] * moved[axis];
+        field.of[axis][k] = j == 0 ? part : field.of[axis][k] + part;
       }
     }
   }
 }
 
 inline void
-SetFieldAdjoint(const GroupFrame & frame, const VertexMotion & motion, const AffineField & sums, Group (&vertex)[4][3])
+SetFieldAdjoint(const GroupFrame &          frame,
+                const VertexMotion<Group> & motion,
+                const AffineField<Group> &  sums,
+                Group (&vertex)[4][3])
 {
   for (int j = 0; j < 4; ++j)
   {
@@ -265,14 +241,15 @@ SetFieldAdjoint(const GroupFrame & frame, const VertexMotion & motion, const Aff
 }
 
 /** The coefficients of the shape functions, see RayFunctions: levels 0..2 of the powers of eta, `stride` apart. */
+template <typename TLanes>
 inline void
-SetShapeLevels(const AffineField & field, Group kappa, Group * levels, int stride)
+SetShapeLevels(const AffineField<TLanes> & field, TLanes kappa, TLanes * levels, int stride)
 {
-  const Group(&x)[4] = field.of[0];
-  const Group(&y)[4] = field.of[1];
-  const Group(&z)[4] = field.of[2];
-  const Group none{};
-  const Group all[shapeLevels][shapeFunctions] = {
+  const TLanes(&x)[4] = field.of[0];
+  const TLanes(&y)[4] = field.of[1];
+  const TLanes(&z)[4] = field.of[2];
+  const TLanes none{};
+  const TLanes all[shapeLevels][shapeFunctions] = {
     { x[0], x[1] - kappa * z[0], x[3], kappa * (x[1] - z[3]), -kappa * z[1], y[0], y[3], y[1], z[3] },
     { x[2],
       -kappa * z[2],
@@ -295,7 +272,7 @@ SetShapeLevels(const AffineField & field, Group kappa, Group * levels, int strid
 }
 
 inline void
-SetShapeLevelsAdjoint(const Group (&s)[shapeLevels][shapeFunctions], Group kappa, AffineField & field)
+SetShapeLevelsAdjoint(const Group (&s)[shapeLevels][shapeFunctions], Group kappa, AffineField<Group> & field)
 {
   field.of[0][0] = s[0][0];
   field.of[0][1] = s[0][1] + kappa * s[0][3];

@@ -131,9 +131,10 @@ public:
     m_PerRow = at(0, 1) - m_AtZero;
   }
 
-  /** Adds the combination of the image and the derivatives that follow it, `plane` apart, at the row's pixels. */
+  /** Adds the combination of the image and the derivatives that follow it, `plane` apart, at the row's columns, where
+   * all of these begin. */
   void
-  Add(int row, int columns, const float * image, std::ptrdiff_t plane, float * sum) const
+  Add(int row, std::pair<int, int> columns, const float * image, std::ptrdiff_t plane, float * sum) const
   {
     // Quadratic in the column: the part along columns, then that along rows, of a and of b.
     const Eigen::Matrix<double, 3, 2> start = m_AtZero + row * m_PerRow;
@@ -152,14 +153,14 @@ public:
   }
 
 private:
-  /** sum[c] += (c0 + c1 c + c2 c^2) from[c]. */
+  /** sum += (c0 + c1 c + c2 c^2) from at each column c. */
   static void
-  AddProduct(float c0, float c1, float c2, int columns, const float * from, float * sum)
+  AddProduct(float c0, float c1, float c2, std::pair<int, int> columns, const float * from, float * sum)
   {
-    for (int c = 0; c < columns; ++c)
+    for (int c = columns.first; c < columns.second; ++c)
     {
       const auto x = static_cast<float>(c);
-      sum[c] += (c0 + x * (c1 + x * c2)) * from[c];
+      *sum++ += (c0 + x * (c1 + x * c2)) * *from++;
     }
   }
 
@@ -185,7 +186,7 @@ public:
     , m_Cells(cells)
     , m_Options(options)
     , m_Modes(modes)
-    , m_Projected(points, cells, view, options, std::clamp(view.size[1] / 8, 8, 64))
+    , m_Projected(points, cells, view, options, std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 }))
   {
     for (const auto & mode : modes.density)
     {
@@ -224,7 +225,11 @@ private:
   void
   DrawBand(std::size_t bandId, const std::vector<float *> & images) const;
   void
-  WriteRow(int row, const float * sums, std::ptrdiff_t plane, const std::vector<float *> & images) const;
+  WriteRow(int                          row,
+           std::pair<int, int>          columns,
+           const float *                sums,
+           std::ptrdiff_t               plane,
+           const std::vector<float *> & images) const;
 
   const std::vector<Vector3> &  m_Points;
   const MeshArrays &            m_Cells;
@@ -250,8 +255,8 @@ DerivativeProjector::Run(const LoopRunner & loops, const std::vector<float *> & 
     }
   }
   const std::size_t shapeModes = m_Modes.shape.size();
-  m_Displacement.resize(m_Points.size() * shapeModes);
-  ForEachInBlocks(loops.prepare, m_Displacement.size(), [&](std::size_t i) {
+  m_Displacement.resize(m_Points.size() * shapeModes + 1); // one to spare, as the kernels read on
+  ForEachInBlocks(loops.prepare, m_Points.size() * shapeModes, [&](std::size_t i) {
     m_Displacement[i] = m_Projected.Rays().ToPixel() * m_Modes.shape[i % shapeModes][i / shapeModes];
   });
   loops.draw(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, images); });
@@ -316,49 +321,58 @@ DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & i
   task.density = m_Density.data();
   task.plane = plane;
   task.scratch = scratch.data();
+  const std::ptrdiff_t        coefficients = BernsteinCount(m_Cells.maximumDegree);
   const projection::Kernels & kernels = projection::SelectKernels(m_Options.portable);
-  m_Projected.ForEachGroupOfBand(
-    bandId,
-    [&](projection::CellGroup & group, const std::size_t * ids) {
+  const std::vector<IdType>   ids = m_Projected.CellsOfBand(bandId);
+  m_Projected.ForEachGroup(
+    ids,
+    [&](projection::CellGroup & group, const IdType * members, std::size_t after) {
       for (int g = 0; g < group.count; ++g)
       {
         for (int i = 0; shapeModes > 0 && i < 4; ++i)
         {
-          task.shape[g][i] = m_Displacement[m_Cells.tetrahedra[ids[g]][i] * shapeModes].data();
+          task.shape[g][i] = m_Displacement[m_Cells.tetrahedra[members[g]][i] * shapeModes].data();
         }
-        task.coefficient[g] = static_cast<std::ptrdiff_t>(ids[g] * BernsteinCount(m_Cells.maximumDegree));
+        task.coefficient[g] = static_cast<std::ptrdiff_t>(members[g]) * coefficients;
+      }
+      task.nextCount = static_cast<int>(std::min<std::size_t>(after, projection::groupSize));
+      for (int g = 0; g < task.nextCount; ++g)
+      {
+        task.next[g] = static_cast<std::ptrdiff_t>(members[group.count + g]) * coefficients;
       }
       kernels.derive(group, task, band);
     },
     [&](std::size_t t) { AddGeneral(t, band, plane); });
+  const std::pair<int, int> range = m_Projected.ColumnsOf(ids);
   for (int row = firstRow; row < endRow; ++row)
   {
-    WriteRow(row, sums.data() + (row - firstRow) * stride, plane, images);
+    WriteRow(row, range, sums.data() + (row - firstRow) * stride, plane, images);
   }
 }
 
-/** From a row of sums in s to line integrals. */
+/** From a row of sums in s to line integrals, which are 0 beside the columns. */
 void
 DerivativeProjector::WriteRow(int                          row,
+                              std::pair<int, int>          columns,
                               const float *                sums,
                               std::ptrdiff_t               plane,
                               const std::vector<float *> & images) const
 {
   const RayFrame &   rays = m_Projected.Rays();
-  const int          columns = rays.Columns();
-  std::vector<float> lengths(columns), sum(columns);
-  for (int column = 0; column < columns; ++column)
-  {
-    lengths[column] = static_cast<float>(rays.StepLength(column, row));
-  }
+  const int          first = columns.first, count = columns.second - columns.first;
+  std::vector<float> lengths(count), sum(count);
+  rays.StepLengths(row, columns.first, columns.second, lengths.data());
+  sums += first;
   auto       image = images.begin();
   const auto write = [&](const float * from) {
-    float * to = *image++ + static_cast<std::size_t>(row) * columns;
-    std::transform(lengths.begin(), lengths.end(), from, to, std::multiplies<float>());
+    float * to = *image++ + static_cast<std::size_t>(row) * rays.Columns();
+    std::fill_n(to, first, 0.0f);
+    std::transform(lengths.begin(), lengths.end(), from, to + first, std::multiplies<float>());
+    std::fill(to + columns.second, to + rays.Columns(), 0.0f);
   };
   const auto setGeneral = [&](int k) {
     const float * const from = sums + (GeneralPlane() + k) * plane;
-    m_Projected.HasGeneral() ? std::copy_n(from, columns, sum.data()) : std::fill_n(sum.data(), columns, 0.0f);
+    m_Projected.HasGeneral() ? std::copy_n(from, count, sum.data()) : std::fill_n(sum.data(), count, 0.0f);
   };
   setGeneral(0);
   std::transform(sum.begin(), sum.end(), sums, sum.begin(), std::plus<float>());
@@ -386,7 +400,7 @@ public:
     : m_Points(points)
     , m_Cells(cells)
     , m_Options(options)
-    , m_Projected(points, cells, view, options, view.size[1])
+    , m_Projected(points, cells, view, options, 1)
     , m_Positions(withPositions ? 4 * cells.tetrahedra.size() : 0, Vector3(Vector3::Zero()))
   {}
 
@@ -454,15 +468,14 @@ Backprojector::Run(const LoopRunner & loops, const float * image, double * coeff
   SetWeights(image);
   const std::size_t stride = BernsteinCount(m_Cells.maximumDegree), cells = m_Cells.tetrahedra.size();
   std::fill_n(coefficients, stride * cells, 0.0);
-  constexpr std::size_t    block = 256;
-  std::vector<std::size_t> ids(cells);
-  std::iota(ids.begin(), ids.end(), std::size_t{ 0 });
+  constexpr std::size_t       block = 256;
   const projection::Kernels & kernels = projection::SelectKernels(m_Options.portable);
   loops.draw((cells + block - 1) / block, [&](std::size_t b) {
+    std::vector<IdType> ids(std::min(cells, (b + 1) * block) - b * block);
+    std::iota(ids.begin(), ids.end(), static_cast<IdType>(b * block));
     m_Projected.ForEachGroup(
-      ids.begin() + b * block,
-      ids.begin() + std::min(cells, (b + 1) * block),
-      [&](projection::CellGroup & group, const std::size_t * members) {
+      ids,
+      [&](projection::CellGroup & group, const IdType * members, std::size_t) {
         projection::Adjoint task{};
         for (int g = 0; g < group.count; ++g)
         {
@@ -472,7 +485,7 @@ Backprojector::Run(const LoopRunner & loops, const float * image, double * coeff
         kernels.adjoin(group, task, m_Band);
         for (std::size_t i = 0; i < 4 * static_cast<std::size_t>(group.count) && !m_Positions.empty(); ++i)
         {
-          Vector3 & position = m_Positions[4 * members[i / 4] + i % 4];
+          Vector3 & position = m_Positions[4 * static_cast<std::size_t>(members[i / 4]) + i % 4];
           position = m_Projected.Rays().ToPixel().transpose() * position;
         }
       },

@@ -58,25 +58,26 @@ FindObstacle(const std::vector<Vector3> &  points,
 
 namespace
 {
-/** Rows of a band: few enough for the cache and for the threads, many enough that few cells lie in two. */
+/** As many that their rows stay in the cache and the threads share them well, so few that not many cells lie in two. */
 int
-BandRows(const XRayGeometry::View & view)
+BandCount(const XRayGeometry::View & view)
 {
-  return std::clamp(view.size[1] / 8, 8, 64);
+  return std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 });
 }
 
 void
 DrawBand(const ProjectedCells & cells, const projection::Kernels & kernels, std::size_t bandId, float * image)
 {
-  const RayFrame &       rays = cells.Rays();
-  const int              columns = rays.Columns();
-  const int              firstRow = cells.FirstRow(bandId), endRow = cells.EndRow(bandId);
-  const int              stride = columns + projection::lanes;
-  std::vector<float>     sums(static_cast<std::size_t>(stride) * (endRow - firstRow), 0.0f);
-  const projection::Band band{ sums.data(), stride, firstRow, endRow, columns };
-  cells.ForEachGroupOfBand(
-    bandId,
-    [&](projection::CellGroup & group, const std::size_t *) { kernels.add(group, band); },
+  const RayFrame &          rays = cells.Rays();
+  const int                 columns = rays.Columns();
+  const int                 firstRow = cells.FirstRow(bandId), endRow = cells.EndRow(bandId);
+  const int                 stride = columns + projection::lanes;
+  std::vector<float>        sums(static_cast<std::size_t>(stride) * (endRow - firstRow + projection::spareRows), 0.0f);
+  const projection::Band    band{ sums.data(), stride, firstRow, endRow, columns };
+  const std::vector<IdType> ids = cells.CellsOfBand(bandId);
+  cells.ForEachRun(
+    ids,
+    [&](const projection::CellRun & run) { kernels.add(run, band); },
     [&](std::size_t t) {
       cells.ForEachChord(
         t, firstRow, endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric &) {
@@ -84,14 +85,18 @@ DrawBand(const ProjectedCells & cells, const projection::Kernels & kernels, std:
           sums[static_cast<std::size_t>(row - firstRow) * stride + column] += static_cast<float>(integral);
         });
     });
+  const auto [firstColumn, endColumn] = cells.ColumnsOf(ids);
   for (int row = firstRow; row < endRow; ++row)
   {
     const float * from = sums.data() + static_cast<std::size_t>(row - firstRow) * stride;
     float *       to = image + static_cast<std::size_t>(row) * columns;
-    for (int column = 0; column < columns; ++column)
+    std::fill_n(to, firstColumn, 0.0f);
+    rays.StepLengths(row, firstColumn, endColumn, to + firstColumn);
+    for (int column = firstColumn; column < endColumn; ++column)
     {
-      to[column] = static_cast<float>(from[column] * rays.StepLength(column, row));
+      to[column] *= from[column];
     }
+    std::fill(to + endColumn, to + columns, 0.0f);
   }
 }
 } // namespace
@@ -110,7 +115,7 @@ ProjectMesh(const std::vector<Vector3> &            points,
   projected.reserve(views.size());
   for (std::size_t v = 0; v < views.size(); ++v)
   {
-    projected.emplace_back(points, cells, views[v], options, BandRows(views[v]));
+    projected.emplace_back(points, cells, views[v], options, BandCount(views[v]));
     projected.back().Prepare(loops.prepare);
     for (std::size_t band = 0; band < projected.back().Bands(); ++band)
     {

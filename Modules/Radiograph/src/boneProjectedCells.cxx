@@ -21,114 +21,226 @@ ProjectedCells::ProjectedCells(const std::vector<Vector3> &  points,
                                const MeshArrays &            cells,
                                const XRayGeometry::View &    view,
                                const MeshRadiographOptions & options,
-                               int                           bandRows)
+                               int                           bands)
   : m_Points(points)
   , m_Cells(cells)
   , m_Options(options)
   , m_Density(cells, options)
   , m_Frame(RayFrame::Displaced(view))
-  , m_BandRows(bandRows)
+  , m_BandStart(bands + 1)
 {}
 
 void
 ProjectedCells::Prepare(const ParallelFor & parallelFor)
 {
-  m_Projected.resize(m_Points.size());
-  ForEachInBlocks(parallelFor, m_Points.size(), [&](std::size_t p) { m_Projected[p] = m_Frame.Project(m_Points[p]); });
+  ProjectPoints(parallelFor);
+  SetBands();
   m_Rows.resize(m_Cells.tetrahedra.size());
-  ForEachInBlocks(parallelFor, m_Rows.size(), [&](std::size_t t) { Locate(t); });
+  const std::size_t block = 2048, blocks = (m_Rows.size() + block - 1) / block;
+  m_Bins.resize(blocks);
+  parallelFor(blocks, [&](std::size_t b) {
+    const std::size_t first = b * block, end = std::min(m_Rows.size(), first + block);
+    for (std::size_t t = first; t < end; ++t)
+    {
+      m_Rows[t] = Locate(t);
+    }
+    FillBins(first, end, m_Bins[b]);
+  });
   m_HasGeneral =
     std::any_of(m_Rows.begin(), m_Rows.end(), [](const RowRange & range) { return range.path == Path::General; });
-  FillBins();
+}
+
+void
+ProjectedCells::ProjectPoints(const ParallelFor & parallelFor)
+{
+  m_Projected.resize(m_Points.size());
+  const auto project = [&](std::size_t p) {
+    const Vector3 x = m_Frame.Project(m_Points[p]);
+    m_Projected[p] = ProjectedPoint(x[0], x[1], x[2], 0.0);
+  };
+  // A few points take less time than to start a loop.
+  constexpr std::size_t few = 16384;
+  if (m_Points.size() > few)
+  {
+    ForEachInBlocks(parallelFor, m_Points.size(), project);
+    return;
+  }
+  for (std::size_t p = 0; p < m_Points.size(); ++p)
+  {
+    project(p);
+  }
+}
+
+/** Bands of about as many points each, so that they take about as long. */
+void
+ProjectedCells::SetBands()
+{
+  const int                bands = static_cast<int>(Bands()), rows = m_Frame.Rows();
+  std::vector<std::size_t> count(rows + 1, 0); // of points at each row, then above it
+  for (const ProjectedPoint & p : m_Projected)
+  {
+    const bool seen = p[1] >= 0 && p[1] < rows;
+    count[seen ? static_cast<int>(p[1]) : 0] += seen ? 1 : 0;
+  }
+  // Rows take time, too.
+  const std::size_t perRow = 1 + m_Projected.size() / (8 * static_cast<std::size_t>(rows));
+  std::size_t       before = 0;
+  for (std::size_t & c : count)
+  {
+    const std::size_t here = c + perRow;
+    c = before;
+    before += here;
+  }
+  m_BandStart.front() = 0;
+  m_BandStart.back() = rows;
+  for (int band = 1; band < bands; ++band)
+  {
+    const std::size_t share = count[rows] * band / bands;
+    const auto        at = std::lower_bound(count.begin(), count.end(), share) - count.begin();
+    m_BandStart[band] = std::clamp(static_cast<int>(at), m_BandStart[band - 1], rows);
+  }
 }
 
 double
 ProjectedCells::MeanParameter() const
 {
   const double sum = std::accumulate(
-    m_Projected.begin(), m_Projected.end(), 0.0, [](double before, const Vector3 & p) { return before + p[2]; });
+    m_Projected.begin(), m_Projected.end(), 0.0, [](double before, const ProjectedPoint & p) { return before + p[2]; });
   return m_Projected.empty() ? 0.0 : sum / static_cast<double>(m_Projected.size());
 }
 
 projection::CellGroup
-ProjectedCells::EmptyGroup() const
+ProjectedCells::MakeGroup(const projection::CellRun & run, std::size_t first) const
 {
   projection::CellGroup group;
-  group.count = 0;
-  group.scale = m_Options.scale;
-  group.offset = m_Options.offset;
-  group.parallel = m_Frame.IsParallel();
+  group.count = static_cast<int>(std::min<std::size_t>(projection::groupSize, run.count - first));
+  group.degree = run.degree;
+  group.scale = run.scale;
+  group.offset = run.offset;
+  group.parallel = run.parallel;
+  for (int g = 0; g < group.count; ++g)
+  {
+    const std::size_t t = run.ids[first + g];
+    for (int i = 0; i < 4; ++i)
+    {
+      const ProjectedPoint & p = m_Projected[m_Cells.tetrahedra[t][i]];
+      group.column[i][g] = p[0];
+      group.row[i][g] = p[1];
+      group.s[i][g] = p[2];
+    }
+    group.coefficients[g] = m_Density.Coefficients(t);
+  }
   return group;
 }
 
-void
-ProjectedCells::Locate(std::size_t t)
+ProjectedCells::RowRange
+ProjectedCells::Locate(std::size_t t) const
 {
-  RowRange & range = m_Rows[t];
   if (!m_Density.IsSelected(t))
   {
-    return;
+    return {};
   }
-  double low[3], high[3];
-  for (int k = 0; k < 3; ++k)
-  {
-    const Id4 & v = m_Cells.tetrahedra[t];
-    const auto  x = { m_Projected[v[0]][k], m_Projected[v[1]][k], m_Projected[v[2]][k], m_Projected[v[3]][k] };
-    low[k] = std::min(x);
-    high[k] = std::max(x);
-  }
+  const Id4 &            v = m_Cells.tetrahedra[t];
+  const ProjectedPoint & a = m_Projected[v[0]];
+  const ProjectedPoint & b = m_Projected[v[1]];
+  const ProjectedPoint & c = m_Projected[v[2]];
+  const ProjectedPoint & d = m_Projected[v[3]];
+  const ProjectedPoint   low = a.min(b).min(c.min(d)), high = a.max(b).max(c.max(d));
   // s at the detector is 1 with a point source, 0 in a parallel beam.
-  const double detector = m_Frame.DetectorDepth();
-  if (low[2] >= detector || (!m_Frame.IsParallel() && high[2] <= 0))
+  const double detector = m_Frame.DetectorDepth(), nearest = low[2], farthest = high[2];
+  if (nearest >= detector || (!m_Frame.IsParallel() && farthest <= 0))
   {
-    return;
+    return {};
   }
-  if (high[2] > detector || (!m_Frame.IsParallel() && low[2] < nearSource))
+  if (farthest > detector || (!m_Frame.IsParallel() && nearest < nearSource))
   {
-    range = { 0, m_Frame.Rows(), Path::General };
-    return;
+    return { 0, m_Frame.Rows(), Path::General };
   }
-  const bool   seen = high[0] >= 0 && low[0] <= m_Frame.Columns() - 1 && std::ceil(low[0]) <= std::floor(high[0]);
-  const double first = std::max(0.0, std::ceil(low[1])), last = std::min(m_Frame.Rows() - 1.0, std::floor(high[1]));
-  if (seen && first <= last)
-  {
-    range = { static_cast<std::int32_t>(first), static_cast<std::int32_t>(last) + 1, Path::Kernel };
-  }
+  // Whole columns and rows within the cell's range and the detector.
+  const auto whole = [](double least, double most, int count, std::int32_t & first, std::int32_t & end) {
+    const double from = std::max(least, 0.0), to = std::min(most, count - 1.0);
+    if (!(from <= to))
+    {
+      return false;
+    }
+    first = static_cast<std::int32_t>(from);
+    first += first < from ? 1 : 0;
+    end = static_cast<std::int32_t>(to) + 1;
+    return first < end;
+  };
+  RowRange     range{ 0, 0, Path::Kernel };
+  std::int32_t first, end;
+  const bool   seen = whole(low[0], high[0], m_Frame.Columns(), first, end) &&
+                    whole(low[1], high[1], m_Frame.Rows(), range.first, range.end);
+  return seen ? range : RowRange();
 }
 
 void
-ProjectedCells::FillBins()
+ProjectedCells::FillBins(std::size_t first, std::size_t end, Bins & bins) const
 {
-  const std::size_t bins = (m_Frame.Rows() + m_BandRows - 1) / m_BandRows;
-  m_BinStart.assign(bins + 1, 0);
-  const auto forEachBin = [&](const auto & function) {
-    for (std::size_t t = 0; t < m_Rows.size(); ++t)
+  // The bands of each row.
+  const std::size_t bands = Bands();
+  const auto        forEachBin = [&](const auto & function) {
+    std::size_t band = 0;
+    for (std::size_t t = first; t < end; ++t)
     {
-      for (int bin = m_Rows[t].first / m_BandRows; bin * m_BandRows < m_Rows[t].end; ++bin)
+      const RowRange & range = m_Rows[t];
+      if (range.path == Path::None)
       {
-        function(static_cast<IdType>(t), bin);
+        continue;
+      }
+      // Neighbouring cells are mostly near: go from where the last one was.
+      while (range.first < m_BandStart[band])
+      {
+        --band;
+      }
+      while (range.first >= m_BandStart[band + 1])
+      {
+        ++band;
+      }
+      for (std::size_t k = band; k < bands && m_BandStart[k] < range.end; ++k)
+      {
+        function(static_cast<IdType>(t), k);
       }
     }
   };
-  forEachBin([&](IdType, int bin) { ++m_BinStart[bin + 1]; });
-  std::partial_sum(m_BinStart.begin(), m_BinStart.end(), m_BinStart.begin());
-  m_BinCells.resize(m_BinStart.back());
-  auto next = m_BinStart;
-  forEachBin([&](IdType t, int bin) { m_BinCells[next[bin]++] = t; });
+  bins.start.assign(bands + 1, 0);
+  forEachBin([&](IdType, std::size_t band) { ++bins.start[band + 1]; });
+  std::partial_sum(bins.start.begin(), bins.start.end(), bins.start.begin());
+  bins.cells.resize(bins.start.back());
+  auto next = bins.start;
+  forEachBin([&](IdType t, std::size_t band) { bins.cells[next[band]++] = t; });
 }
 
-void
-ProjectedCells::Append(std::size_t t, projection::CellGroup & group) const
+std::vector<IdType>
+ProjectedCells::CellsOfBand(std::size_t band) const
 {
-  for (int i = 0; i < 4; ++i)
+  std::vector<IdType> ids;
+  for (const Bins & bins : m_Bins)
   {
-    const Vector3 & p = m_Projected[m_Cells.tetrahedra[t][i]];
-    group.column[i][group.count] = p[0];
-    group.row[i][group.count] = p[1];
-    group.s[i][group.count] = p[2];
+    ids.insert(ids.end(), bins.cells.begin() + bins.start[band], bins.cells.begin() + bins.start[band + 1]);
   }
-  group.degree = m_Density.Degree(t);
-  group.coefficients[group.count++] = m_Density.Coefficients(t);
+  return ids;
+}
+
+std::pair<int, int>
+ProjectedCells::ColumnsOf(const std::vector<IdType> & ids) const
+{
+  double low = m_Frame.Columns(), high = -1;
+  for (IdType t : ids)
+  {
+    if (m_Rows[t].path == Path::General)
+    {
+      return { 0, m_Frame.Columns() };
+    }
+    for (IdType v : m_Cells.tetrahedra[t])
+    {
+      low = std::min(low, m_Projected[v][0]);
+      high = std::max(high, m_Projected[v][0]);
+    }
+  }
+  const int first = static_cast<int>(std::max(low, 0.0));
+  return { first, std::max(first, static_cast<int>(std::min(high + 1, static_cast<double>(m_Frame.Columns())))) };
 }
 
 // Columns whose rays may meet the cell: those where no back plane lies before a front plane.

@@ -19,6 +19,9 @@ struct CellChord
   int         exitFace;  ///< -1 where it ends within the cell, at the pixel
 };
 
+/** A point's column, row and s, see RayFrame::Project, and 0. */
+using ProjectedPoint = Eigen::Array4d;
+
 /** The tetrahedra of a mesh as a view sees them, by bands of rows. */
 class ProjectedCells
 {
@@ -27,7 +30,7 @@ public:
                  const MeshArrays &            cells,
                  const XRayGeometry::View &    view,
                  const MeshRadiographOptions & options,
-                 int                           bandRows);
+                 int                           bands);
 
   /** Projects the points and finds each band's cells. */
   void
@@ -46,17 +49,17 @@ public:
   std::size_t
   Bands() const
   {
-    return m_BinStart.size() - 1;
+    return m_BandStart.size() - 1;
   }
   int
   FirstRow(std::size_t band) const
   {
-    return static_cast<int>(band) * m_BandRows;
+    return m_BandStart[band];
   }
   int
   EndRow(std::size_t band) const
   {
-    return std::min(m_Frame.Rows(), FirstRow(band) + m_BandRows);
+    return m_BandStart[band + 1];
   }
   /** Whether there are cells near the source or through the detector, which the kernels cannot take. */
   bool
@@ -67,22 +70,26 @@ public:
   /** Mean of the points' ray parameter s; 0 without points. */
   double
   MeanParameter() const;
-  /** An empty group for Append. */
-  projection::CellGroup
-  EmptyGroup() const;
 
-  /** Calls drawGroup(group, ids) for the cells of [first, last) (ids) that lie wholly between source and detector, by
-   * groups of one degree, and drawGeneral(t) for those near the source or through the detector. */
-  template <typename TIterator, typename TGroup, typename TGeneral>
+  /** The cells that meet a band, ascending. */
+  std::vector<IdType>
+  CellsOfBand(std::size_t band) const;
+
+  /** The columns that these cells may cover: first, and one past the last. */
+  std::pair<int, int>
+  ColumnsOf(const std::vector<IdType> & ids) const;
+
+  /** Calls drawRun(run) for the cells of `ids` that lie wholly between source and detector, by runs of one degree, and
+   * drawGeneral(t) for those near the source or through the detector, in the order of `ids`. */
+  template <typename TRun, typename TGeneral>
   void
-  ForEachGroup(TIterator first, TIterator last, const TGroup & drawGroup, const TGeneral & drawGeneral) const;
+  ForEachRun(const std::vector<IdType> & ids, const TRun & drawRun, const TGeneral & drawGeneral) const;
+
+  /** The same by groups of up to projection::groupSize: drawGroup(group, ids of its members, how many ids of the next
+   * groups follow these). */
   template <typename TGroup, typename TGeneral>
   void
-  ForEachGroupOfBand(std::size_t band, const TGroup & drawGroup, const TGeneral & drawGeneral) const
-  {
-    ForEachGroup(
-      m_BinCells.begin() + m_BinStart[band], m_BinCells.begin() + m_BinStart[band + 1], drawGroup, drawGeneral);
-  }
+  ForEachGroup(const std::vector<IdType> & ids, const TGroup & drawGroup, const TGeneral & drawGeneral) const;
 
   /** Calls function(row, column, chord, mu) for each ray of the rows that passes cell t, in double precision. */
   template <typename TFunction>
@@ -102,13 +109,23 @@ private:
     std::int32_t end{ 0 };
     Path         path{ Path::None };
   };
+  /** Some cells, by bands. */
+  struct Bins
+  {
+    std::vector<std::size_t> start; ///< per band, into cells
+    std::vector<IdType>      cells;
+  };
 
   void
-  Locate(std::size_t t);
+  ProjectPoints(const ParallelFor & parallelFor);
   void
-  FillBins();
+  SetBands();
+  RowRange
+  Locate(std::size_t t) const;
   void
-  Append(std::size_t t, projection::CellGroup & group) const;
+  FillBins(std::size_t first, std::size_t end, Bins & bins) const;
+  projection::CellGroup
+  MakeGroup(const projection::CellRun & run, std::size_t first) const;
   ColumnRun
   ColumnsOfRow(const CellLines & lines, int row) const;
 
@@ -117,13 +134,12 @@ private:
   const MeshRadiographOptions & m_Options;
   CellDensity                   m_Density;
   RayFrame                      m_Frame;
-  int                           m_BandRows;
 
-  std::vector<Vector3>     m_Projected; ///< column, row, s of each point
-  std::vector<RowRange>    m_Rows;      ///< of each cell
-  bool                     m_HasGeneral{ false };
-  std::vector<std::size_t> m_BinStart; ///< per band, into m_BinCells
-  std::vector<IdType>      m_BinCells; ///< ascending within a band
+  std::vector<ProjectedPoint> m_Projected;
+  std::vector<RowRange>       m_Rows; ///< of each cell
+  bool                        m_HasGeneral{ false };
+  std::vector<int>            m_BandStart; ///< first row of each band, and the number of rows
+  std::vector<Bins>           m_Bins;      ///< of blocks of cells
 };
 
 /** Entry and exit depth of a ray and their faces, by the planes' lines at its pixel; false where it misses. */
@@ -145,40 +161,59 @@ ForEachInBlocks(const ParallelFor & parallelFor, std::size_t count, const TFunct
   });
 }
 
-template <typename TIterator, typename TGroup, typename TGeneral>
+template <typename TRun, typename TGeneral>
 void
-ProjectedCells::ForEachGroup(TIterator        first,
-                             TIterator        last,
-                             const TGroup &   drawGroup,
-                             const TGeneral & drawGeneral) const
+ProjectedCells::ForEachRun(const std::vector<IdType> & ids, const TRun & drawRun, const TGeneral & drawGeneral) const
 {
-  projection::CellGroup group = EmptyGroup();
-  std::size_t           ids[projection::groupSize];
-  const auto            flush = [&]() {
-    if (group.count > 0)
-    {
-      drawGroup(group, ids);
-    }
-    group.count = 0;
-  };
-  for (; first != last; ++first)
+  for (std::size_t i = 0; i < ids.size();)
   {
-    const auto t = static_cast<std::size_t>(*first);
-    if (m_Rows[t].path == Path::General)
+    const auto t = static_cast<std::size_t>(ids[i]);
+    const Path path = m_Rows[t].path;
+    const int  degree = m_Density.Degree(t);
+    if (path != Path::Kernel)
     {
-      drawGeneral(t);
-    }
-    else if (m_Rows[t].path == Path::Kernel)
-    {
-      if (group.count == projection::groupSize || (group.count > 0 && group.degree != m_Density.Degree(t)))
+      if (path == Path::General)
       {
-        flush();
+        drawGeneral(t);
       }
-      ids[group.count] = t;
-      Append(t, group);
+      ++i;
+      continue;
     }
+    std::size_t end = i + 1;
+    while (end < ids.size() && m_Rows[ids[end]].path == Path::Kernel && m_Density.Degree(ids[end]) == degree)
+    {
+      ++end;
+    }
+    drawRun(projection::CellRun{ ids.data() + i,
+                                 end - i,
+                                 m_Projected.front().data(),
+                                 m_Cells.tetrahedra.front().data(),
+                                 m_Density.Coefficients(0),
+                                 m_Density.Stride(),
+                                 degree,
+                                 m_Options.scale,
+                                 m_Options.offset,
+                                 m_Frame.IsParallel() });
+    i = end;
   }
-  flush();
+}
+
+template <typename TGroup, typename TGeneral>
+void
+ProjectedCells::ForEachGroup(const std::vector<IdType> & ids,
+                             const TGroup &              drawGroup,
+                             const TGeneral &            drawGeneral) const
+{
+  ForEachRun(
+    ids,
+    [&](const projection::CellRun & run) {
+      for (std::size_t i = 0; i < run.count; i += projection::groupSize)
+      {
+        projection::CellGroup group = MakeGroup(run, i);
+        drawGroup(group, run.ids + i, run.count - i - group.count);
+      }
+    },
+    drawGeneral);
 }
 
 template <typename TFunction>

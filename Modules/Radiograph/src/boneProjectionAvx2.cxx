@@ -13,7 +13,8 @@
 #endif
 
 #define BONE_PROJECTION_NAMESPACE avx2
-#include "boneProjectionKernel.hxx"
+#define BONE_PROJECTION_TILE_ROWS 1
+#include "boneStripKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 

@@ -13,7 +13,8 @@
 #endif
 
 #define BONE_PROJECTION_NAMESPACE avx512
-#include "boneProjectionKernel.hxx"
+#define BONE_PROJECTION_TILE_ROWS 2
+#include "boneStripKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 

@@ -49,6 +49,43 @@ struct Vector
   typedef TReal Type __attribute__((vector_size(lanes * sizeof(TReal))));
 };
 
+/** function(0), ..., function(TCount - 1), unrolled where it is short. */
+template <int TCount, int TFirst = 0, typename TFunction>
+inline __attribute__((always_inline)) void
+Repeat(const TFunction & function)
+{
+  if constexpr (TCount > 21)
+  {
+    for (int i = 0; i < TCount; ++i)
+    {
+      function(i);
+    }
+  }
+  else if constexpr (TFirst < TCount)
+  {
+    function(TFirst);
+    Repeat<TCount, TFirst + 1>(function);
+  }
+}
+
+/** The same for loops of degrees: unrolled up to degree 3. */
+template <int TCount, typename TFunction>
+inline __attribute__((always_inline)) void
+RepeatDegrees(const TFunction & function)
+{
+  if constexpr (TCount > 4)
+  {
+    for (int i = 0; i < TCount; ++i)
+    {
+      function(i);
+    }
+  }
+  else
+  {
+    Repeat<TCount>(function);
+  }
+}
+
 /** out[0..lanes) += value. */
 inline void
 Accumulate(float * out, const Vector<float>::Type & value)
@@ -86,11 +123,25 @@ Complete(CellGroup & group)
 /** One number of each cell of a group. */
 typedef double Group __attribute__((vector_size(groupSize * sizeof(double))));
 
+/** One number of each cell of two groups, in single precision. */
+constexpr int               batchSize = 2 * groupSize;
+typedef Vector<float>::Type Batch;
+static_assert(batchSize == lanes, "both are eight");
+
+inline Batch
+Narrow(Group low, Group high)
+{
+  typedef float Half __attribute__((vector_size(groupSize * sizeof(float))));
+  const Half    a = __builtin_convertvector(low, Half), b = __builtin_convertvector(high, Half);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
 /** What has a value for each cell of a group. */
 struct GroupFrame
 {
   Group c0, r0, s0;
   Group halfWidth, halfHeight, halfDepth; ///< wc, wr, h
+  Group perWidth, perHeight;              ///< their reciprocals
   Group columns[2], rows[2];              ///< least and greatest of the vertices
   Group kappa;
   Group mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
@@ -130,6 +181,11 @@ Absolute(double x)
 }
 inline Group
 Absolute(Group x)
+{
+  return x < 0 ? -x : x;
+}
+inline Batch
+Absolute(Batch x)
 {
   return x < 0 ? -x : x;
 }
@@ -211,25 +267,23 @@ SetBarycentric(const Group (&p)[4][3], GroupFrame & frame)
   }
 }
 
-/** Everything of GroupFrame. */
+/** Everything of GroupFrame, from the vertices. */
 inline void
-SetGroupFrame(const CellGroup & group, GroupFrame & frame)
+SetGroupFrame(const Group (&column)[4], const Group (&row)[4], const Group (&s)[4], bool parallel, GroupFrame & frame)
 {
-  Group column[4], row[4], s[4];
-  Load(group.column, column);
-  Load(group.row, row);
-  Load(group.s, s);
   SetRange(column, frame.columns, frame.c0, frame.halfWidth);
   SetRange(row, frame.rows, frame.r0, frame.halfHeight);
   Group range[2];
   SetRange(s, range, frame.s0, frame.halfDepth);
   const Group none{}, perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
-  const Group perDepth = 1.0 / frame.halfDepth, perS = group.parallel ? none : 1.0 / frame.s0;
+  frame.perWidth = perWidth;
+  frame.perHeight = perHeight;
+  const Group perDepth = 1.0 / frame.halfDepth, perS = parallel ? none : 1.0 / frame.s0;
   frame.kappa = frame.halfDepth * perS;
   Group p[4][3];
   for (int i = 0; i < 4; ++i)
   {
-    const Group magnification = group.parallel ? none + 1.0 : s[i] * perS;
+    const Group magnification = parallel ? none + 1.0 : s[i] * perS;
     p[i][0] = magnification * (column[i] - frame.c0) * perWidth;
     p[i][1] = magnification * (row[i] - frame.r0) * perHeight;
     p[i][2] = (s[i] - frame.s0) * perDepth;
@@ -244,6 +298,16 @@ SetGroupFrame(const CellGroup & group, GroupFrame & frame)
     frame.depth[i][1] = frame.mu[1][i] * inverse * perWidth;
     frame.depth[i][2] = frame.mu[2][i] * inverse * perHeight;
   }
+}
+
+inline void
+SetGroupFrame(const CellGroup & group, GroupFrame & frame)
+{
+  Group column[4], row[4], s[4];
+  Load(group.column, column);
+  Load(group.row, row);
+  Load(group.s, s);
+  SetGroupFrame(column, row, s, group.parallel, frame);
 }
 
 /** Pixels of one cell of a group; false where it meets none of the band or is flat. */

@@ -20,29 +20,69 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-template <int N>
+template <int N, typename TLanes = Group>
 struct Monomials
 {
-  Group q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
+  TLanes q[N + 1][N + 1][N + 1]; ///< of X^a Y^b z^k
 };
 
+/** N! / (e0! e1! e2! e3!) by e1, e2, e3. */
 template <int N>
-inline double
-Multinomial(const int (&exponent)[4])
+struct Multinomials
 {
-  return factorial[N] /
-         (factorial[exponent[0]] * factorial[exponent[1]] * factorial[exponent[2]] * factorial[exponent[3]]);
-}
+  double of[N + 1][N + 1][N + 1]{};
+  constexpr Multinomials()
+  {
+    for (int x = 0; x <= N; ++x)
+    {
+      for (int y = 0; x + y <= N; ++y)
+      {
+        for (int z = 0; x + y + z <= N; ++z)
+        {
+          of[x][y][z] = factorial[N] / (factorial[N - x - y - z] * factorial[x] * factorial[y] * factorial[z]);
+        }
+      }
+    }
+  }
+};
+template <int N>
+constexpr Multinomials<N> multinomials;
 
 /** From Bernstein coefficients (`in`, of degree D) to monomials: the coefficient of X^a Y^b z^k is a multinomial times
- * the blossom at the columns of `mu`, each as often as its exponent says. `next` is the first column still to use. */
-template <int N, int D>
+ * the blossom at the columns of `mu`, each as often as its exponent (E1..E3 of columns 1..3) says. W is the first
+ * column still to use. */
+template <int N, int D, int W, int E1, int E2, int E3, typename TLanes>
+inline __attribute__((always_inline)) void
+Contract(const TLanes * in, const TLanes (&mu)[4][4], Monomials<N, TLanes> & result)
+{
+  if constexpr (D == 0)
+  {
+    using Real = std::decay_t<decltype(in[0][0])>;
+    result.q[E1][E2][E3] = static_cast<Real>(multinomials<N>.of[E1][E2][E3]) * in[0];
+  }
+  else
+  {
+    TLanes out[CoefficientCount(D - 1)];
+    Repeat<CoefficientCount(D - 1)>([&](int p) __attribute__((always_inline)) {
+      out[p] = mu[W][0] * in[p] + mu[W][1] * in[raise.second[p]] + mu[W][2] * in[raise.third[p]] +
+               mu[W][3] * in[raise.third[p] + 1];
+    });
+    Contract<N, D - 1, W, E1 + (W == 1 ? 1 : 0), E2 + (W == 2 ? 1 : 0), E3 + (W == 3 ? 1 : 0)>(out, mu, result);
+    if constexpr (W < 3)
+    {
+      Contract<N, D, W + 1, E1, E2, E3>(in, mu, result);
+    }
+  }
+}
+
+/** The same with everything known at run time, for degrees where Contract would grow too large. */
+template <int N, int D, typename TLanes>
 struct Blossom
 {
   static void
-  Run(const Group * in, const Group (&mu)[4][4], int next, int (&exponent)[4], Monomials<N> & result)
+  Run(const TLanes * in, const TLanes (&mu)[4][4], int next, int (&exponent)[4], Monomials<N, TLanes> & result)
   {
-    Group out[CoefficientCount(D - 1)];
+    TLanes out[CoefficientCount(D - 1)];
     for (int w = next; w < 4; ++w)
     {
       for (int p = 0; p < CoefficientCount(D - 1); ++p)
@@ -51,29 +91,74 @@ struct Blossom
                  mu[w][3] * in[raise.third[p] + 1];
       }
       ++exponent[w];
-      Blossom<N, D - 1>::Run(out, mu, w, exponent, result);
+      Blossom<N, D - 1, TLanes>::Run(out, mu, w, exponent, result);
       --exponent[w];
     }
   }
 };
 
-template <int N>
-struct Blossom<N, 0>
+template <int N, typename TLanes>
+struct Blossom<N, 0, TLanes>
 {
   static void
-  Run(const Group * in, const Group (&)[4][4], int, int (&exponent)[4], Monomials<N> & result)
+  Run(const TLanes * in, const TLanes (&)[4][4], int, int (&exponent)[4], Monomials<N, TLanes> & result)
   {
-    result.q[exponent[1]][exponent[2]][exponent[3]] = Multinomial<N>(exponent) * in[0];
+    using Real = std::decay_t<decltype(in[0][0])>;
+    const double factor = multinomials<N>.of[exponent[1]][exponent[2]][exponent[3]];
+    result.q[exponent[1]][exponent[2]][exponent[3]] = static_cast<Real>(factor) * in[0];
   }
 };
 
-/** The densities of a group: A[b][k * (N + 1) + a], and how much rounding may grow: the sum of the coefficients'
+template <int N, typename TLanes>
+inline void
+SetMonomials(const TLanes (&control)[CoefficientCount(N)], const TLanes (&mu)[4][4], Monomials<N, TLanes> & result)
+{
+  if constexpr (N <= 3)
+  {
+    Contract<N, N, 0, 0, 0, 0>(control, mu, result);
+  }
+  else
+  {
+    int exponent[4] = { 0, 0, 0, 0 };
+    Blossom<N, N, TLanes>::Run(control, mu, 0, exponent, result);
+  }
+}
+
+/** The polynomial in z of X^a Y^b. */
+template <int N, typename TLanes>
+inline __attribute__((always_inline)) void
+SetInZ(const Monomials<N, TLanes> & monomials, int a, int b, TLanes (&inZ)[N + 1])
+{
+  RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) {
+    if (a + b + k <= N)
+    {
+      inZ[k] = monomials.q[a][b][k];
+    }
+  });
+}
+
+/** Multiplies a polynomial in z by (1 + kappa z)^times, dropping what would exceed its degree: there is nothing. */
+template <int N, typename TLanes>
+inline __attribute__((always_inline)) void
+Magnify(TLanes kappa, int times, TLanes (&inZ)[N + 1])
+{
+  RepeatDegrees<N>([&](int time) __attribute__((always_inline)) {
+    RepeatDegrees<N>([&](int k) __attribute__((always_inline)) {
+      if (time < times)
+      {
+        inZ[N - k] += kappa * inZ[N - k - 1];
+      }
+    });
+  });
+}
+
+/** The densities of some cells: A[b][k * (N + 1) + a], and how much rounding may grow: the sum of the coefficients'
  * magnitudes over the largest magnitude of a control value. */
-template <int N>
+template <int N, typename TLanes>
 struct RayPolynomials
 {
-  Group a[N + 1][(N + 1) * (N + 1)];
-  Group growth;
+  TLanes a[N + 1][(N + 1) * (N + 1)];
+  TLanes growth;
 };
 
 /** The same, ready to be evaluated for all (k, a) of a row at once. */
@@ -81,7 +166,8 @@ template <typename TReal, int N>
 class RowPolynomial
 {
 public:
-  RowPolynomial(const RayPolynomials<N> & densities, int member)
+  template <typename TLanes>
+  RowPolynomial(const RayPolynomials<N, TLanes> & densities, int member)
   {
     for (int b = 0; b <= N; ++b)
     {
@@ -285,6 +371,20 @@ Transpose(const Group (&from)[groupSize], Group * to)
   to[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
+/** The same for each half of four rows. */
+inline void
+Transpose(const Batch (&from)[groupSize], Batch * to)
+{
+  const Batch a = __builtin_shufflevector(from[0], from[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Batch b = __builtin_shufflevector(from[0], from[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Batch c = __builtin_shufflevector(from[2], from[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Batch d = __builtin_shufflevector(from[2], from[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  to[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  to[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  to[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  to[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
 /** scale * coefficients + offset of the cells of a group. */
 template <int N>
 void
@@ -316,45 +416,71 @@ LoadControl(const double * const (&coefficients)[groupSize],
   }
 }
 
-/** The densities times h along the rays of each cell's frame. */
+/** The same in single precision, of eight cells. */
 template <int N>
 void
-SetDensities(const CellGroup & group, const GroupFrame & frame, RayPolynomials<N> & densities)
+LoadControl(const double * const (&coefficients)[batchSize],
+            Batch scale,
+            Batch offset,
+            Batch (&control)[CoefficientCount(N)])
 {
-  Group control[CoefficientCount(N)], largest{};
-  LoadControl<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, control);
-  for (const Group & value : control)
+  constexpr int count = CoefficientCount(N);
+  for (int p = 0; p + groupSize <= count; p += groupSize)
   {
-    const Group magnitude = Absolute(value);
-    largest = magnitude > largest ? magnitude : largest;
-  }
-  Monomials<N> monomials;
-  int          exponent[4] = { 0, 0, 0, 0 };
-  Blossom<N, N>::Run(control, frame.mu, 0, exponent, monomials);
-  Group sum{};
-  for (int b = 0; b <= N; ++b)
-  {
-    for (int a = 0; a <= N; ++a)
+    Batch rows[groupSize];
+    for (int g = 0; g < groupSize; ++g)
     {
-      Group inZ[N + 1] = {};
-      for (int k = 0; k <= N - a - b; ++k)
-      {
-        inZ[k] = monomials.q[a][b][k];
-      }
-      for (int times = 0; times < a + b && a + b <= N; ++times)
-      {
-        for (int k = N; k > 0; --k)
-        {
-          inZ[k] += frame.kappa * inZ[k - 1];
-        }
-      }
-      for (int k = 0; k <= N; ++k)
-      {
-        densities.a[b][k * (N + 1) + a] = inZ[k];
-        sum += Absolute(inZ[k]);
-      }
+      Group low, high;
+      __builtin_memcpy(&low, coefficients[g] + p, sizeof(low));
+      __builtin_memcpy(&high, coefficients[g + groupSize] + p, sizeof(high));
+      rows[g] = Narrow(low, high);
+    }
+    Transpose(rows, control + p);
+  }
+  for (int p = count - count % groupSize; p < count; ++p)
+  {
+    for (int g = 0; g < batchSize; ++g)
+    {
+      control[p][g] = static_cast<float>(coefficients[g][p]);
     }
   }
+  for (Batch & value : control)
+  {
+    value = scale * value + offset;
+  }
+}
+
+/** From control values, which are density times h, to polynomials along the rays of each cell's frame. */
+template <int N, typename TLanes>
+void
+SetDensities(const TLanes (&control)[CoefficientCount(N)],
+             const TLanes (&mu)[4][4],
+             TLanes                      kappa,
+             RayPolynomials<N, TLanes> & densities)
+{
+  TLanes largest{};
+  for (const TLanes & value : control)
+  {
+    const TLanes magnitude = Absolute(value);
+    largest = magnitude > largest ? magnitude : largest;
+  }
+  Monomials<N, TLanes> monomials;
+  SetMonomials<N, TLanes>(control, mu, monomials);
+  TLanes sum{};
+  RepeatDegrees<N + 1>([&](int b) __attribute__((always_inline)) {
+    RepeatDegrees<N + 1>([&](int a) __attribute__((always_inline)) {
+      TLanes inZ[N + 1] = {};
+      if (a + b <= N)
+      {
+        SetInZ<N>(monomials, a, b, inZ);
+        Magnify<N>(kappa, a + b, inZ);
+      }
+      RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) {
+        densities.a[b][k * (N + 1) + a] = inZ[k];
+        sum += Absolute(inZ[k]);
+      });
+    });
+  });
   densities.growth = largest > 0 ? sum / largest : largest;
 }
 
@@ -373,43 +499,6 @@ AddInPrecision(const Frame & frame, const RowPolynomial<TReal, N> & polynomial, 
     default:
       AddRows<TReal, N, 3>(frame, polynomial, band);
   }
-}
-
-template <int N>
-void
-AddOfDegree(CellGroup & group, const Band & band)
-{
-  constexpr double largestGrowth = 64;
-  GroupFrame       groupFrame;
-  SetGroupFrame(group, groupFrame);
-  RayPolynomials<N> densities;
-  SetDensities<N>(group, groupFrame, densities);
-  for (int g = 0; g < group.count; ++g)
-  {
-    Frame frame;
-    if (!PlaceFrame(groupFrame, g, band, frame) || !SetPlanes(groupFrame, g, frame))
-    {
-      continue;
-    }
-    if (frame.steep || !(densities.growth[g] <= largestGrowth))
-    {
-      AddInPrecision<double, N>(frame, RowPolynomial<double, N>(densities, g), band);
-    }
-    else
-    {
-      AddInPrecision<float, N>(frame, RowPolynomial<float, N>(densities, g), band);
-    }
-  }
-}
-
-inline void
-AddCells(CellGroup & group, const Band & band)
-{
-  Complete(group);
-  using Function = void (*)(CellGroup &, const Band &);
-  constexpr Function byDegree[] = { AddOfDegree<0>, AddOfDegree<1>, AddOfDegree<2>, AddOfDegree<3>, AddOfDegree<4>,
-                                    AddOfDegree<5>, AddOfDegree<6>, AddOfDegree<7>, AddOfDegree<8> };
-  byDegree[group.degree](group, band);
 }
 } // namespace BONE_PROJECTION_NAMESPACE
 } // namespace projection

@@ -9,7 +9,8 @@
 #endif
 
 #define BONE_PROJECTION_NAMESPACE portable
-#include "boneProjectionKernel.hxx"
+#define BONE_PROJECTION_TILE_ROWS 1
+#include "boneStripKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 

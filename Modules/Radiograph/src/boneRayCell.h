@@ -53,6 +53,12 @@ public:
   {
     return m_Cells.coefficients.data() + t * m_Stride;
   }
+  /** From one tetrahedron's coefficients to the next. */
+  std::size_t
+  Stride() const
+  {
+    return m_Stride;
+  }
   int
   Degree(std::size_t t) const
   {

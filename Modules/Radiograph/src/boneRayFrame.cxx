@@ -44,6 +44,24 @@ RayFrame::Project(const Vector3 & point) const
   return m_Parallel ? Vector3(q[1], q[2], q[0]) : Vector3(q[1] / q[0], q[2] / q[0], q[0]);
 }
 
+void
+RayFrame::StepLengths(int row, int firstColumn, int endColumn, float * lengths) const
+{
+  Eigen::Map<Eigen::ArrayXf> out(lengths, endColumn - firstColumn);
+  if (m_Parallel)
+  {
+    out.setOnes();
+    return;
+  }
+  // Along the row and across it: a sum of squares.
+  const Vector3 start = m_Direction + row * m_StepV, axis = m_StepU.normalized();
+  const double  along = start.dot(axis), step = m_StepU.norm();
+  const auto    rest = static_cast<float>((start - along * axis).squaredNorm());
+  const auto    first = static_cast<float>(along + step * firstColumn);
+  const auto    last = static_cast<float>(along + step * (endColumn - 1));
+  out = (Eigen::ArrayXf::LinSpaced(out.size(), first, last).square() + rest).sqrt();
+}
+
 RayFrame::DepthLine
 RayFrame::Restrict(double a, const Vector3 & g) const
 {

@@ -478,6 +478,21 @@ TEST(MeshRadiograph, WalkAndProjectionAgreeFromAnywhere)
   }
 }
 
+TEST(MeshRadiograph, CellsOfAnySizeOnTheDetectorKeepTheirAccuracy)
+{
+  // From a few pixels a cell to more columns than strips are made for; bands of rows that cells reach across.
+  auto mesh = Box({ { 1, 1, 1 } }, 0);
+  for (int degree : { 1, 2, 3, 6 })
+  {
+    test::SetRandom(mesh, degree, 17);
+    for (int pixels : { 7, 11, 20, 45, 170 })
+    {
+      const View view = Oblique(degree == 2, pixels);
+      EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-5) << degree << ' ' << pixels;
+    }
+  }
+}
+
 TEST(MeshRadiograph, TheProcessorsNewerInstructionsChangeRoundingOnly)
 {
   auto mesh = Staircase();
