@@ -1,11 +1,16 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// boneSimplificationValidation levels L1.vtu PREFIX COUNT...: a hierarchy of a mesh, audited level by level; JSON.
+// boneSimplificationValidation levels L1.vtu PREFIX CT LABELS LABEL COUNT...: a hierarchy of a mesh, audited level by
+// level, its density compared with the CT at the label's voxels (label 0: all that are not 0); JSON.
+// boneSimplificationValidation compare MESH.vtu CT LABELS LABEL: its density against the CT.
 // boneSimplificationValidation property FIRST LAST: random meshes and bounds by seed; says what was wrong.
 // boneSimplificationValidation time L1.vtu REPEAT COUNT...: seconds of the simplification alone, the least of REPEAT.
+#include "boneImageIO.h"
+
 #include "boneCollapseProperty.h"
 #include "boneContourTiler.h"
+#include "boneDensityEvaluation.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
 #include "boneMeshValidator.h"
@@ -15,6 +20,7 @@
 #include "boneSurfaceGrid.h"
 #include "boneTetraCollapseFilter.h"
 #include "boneTriangleTree.h"
+#include "boneVoxelGrid.h"
 
 #include <itkMultiThreaderBase.h>
 
@@ -179,8 +185,34 @@ Audit(const MeshArrays & first, const MeshArrays & level)
   return out;
 }
 
+/** Where the bone is in its CT. */
+struct Images
+{
+  CTImage::Pointer    ct;
+  LabelImage::Pointer labels;
+  int                 label;
+};
+
+json
+DensityError(const MeshArrays & mesh, const Images & images)
+{
+  const float * density = images.ct->GetBufferPointer();
+  const short * labels = images.labels->GetBufferPointer();
+  const int     label = images.label;
+  const auto    found = CompareDensity(mesh,
+                                    MakeVoxelGrid(*images.ct, images.ct->GetBufferedRegion()),
+                                    [=](std::size_t offset, double & value) {
+                                      value = density[offset];
+                                      return label == 0 ? labels[offset] != 0 : labels[offset] == label;
+                                    });
+  return { { "percent", found.meanAbsolutePercent },
+           { "deviation", 100.0 * found.standardDeviation / found.range },
+           { "voxels", found.voxels },
+           { "uncovered", 100.0 * found.uncovered / (found.voxels + found.uncovered) } };
+}
+
 int
-Levels(const std::string & file, const std::string & prefix, const std::vector<IdType> & counts)
+Levels(const std::string & file, const std::string & prefix, const Images & images, const std::vector<IdType> & counts)
 {
   const auto mesh = ReadDensityMesh(file);
   const auto filter = MakeFilter(mesh, counts, 2);
@@ -198,6 +230,7 @@ Levels(const std::string & file, const std::string & prefix, const std::vector<I
   {
     const auto & level = filter->GetOutput()->GetLevels()[i];
     json         found = Audit(first, level.mesh->GetArrays());
+    found["density"] = DensityError(level.mesh->GetArrays(), images);
     found["tetrahedra"] = level.mesh->GetNumberOfTetrahedra();
     found["points"] = level.mesh->GetNumberOfPoints();
     found["asked"] = i == 0 ? level.mesh->GetNumberOfTetrahedra() : counts[i - 1];
@@ -211,6 +244,13 @@ Levels(const std::string & file, const std::string & prefix, const std::vector<I
     out["levels"].push_back(found);
   }
   std::cout << out.dump(1) << '\n';
+  return 0;
+}
+
+int
+Compare(const std::string & file, const Images & images)
+{
+  std::cout << DensityError(ReadDensityMesh(file)->GetArrays(), images) << '\n';
   return 0;
 }
 
@@ -229,7 +269,7 @@ Time(const std::string & file, int repeat, const std::vector<IdType> & counts)
             << '\n';
   return 0;
 }
-/** Random bodies, every other one tiled from random contours, each under random bounds. */
+/** Random bodies, every twentieth tiled from random contours, each under random bounds. */
 int
 Property(unsigned first, unsigned last)
 {
@@ -241,7 +281,7 @@ Property(unsigned first, unsigned last)
     try
     {
       MeshArrays body;
-      if (seed % 2 == 0)
+      if (seed % 20 == 0)
       {
         TilingReport report;
         body = TileContours(*RandomStack(seed).Make(), {}, report);
@@ -274,19 +314,23 @@ main(int argc, char * argv[])
 {
   const std::string         job = argc > 1 ? argv[1] : "";
   std::vector<IdType>       counts;
-  for (int i = 4; i < argc; ++i)
+  for (int i = job == "levels" ? 7 : 4; i < argc; ++i)
   {
     counts.push_back(std::stoi(argv[i]));
   }
   try
   {
-    if (job == "levels" && argc > 4)
+    if (job == "levels" && argc > 7)
     {
-      return Levels(argv[2], argv[3], counts);
+      return Levels(argv[2], argv[3], { ReadCT(argv[4]), ReadLabels(argv[5]), std::stoi(argv[6]) }, counts);
     }
     if (job == "property" && argc == 4)
     {
       return Property(static_cast<unsigned>(std::stoul(argv[2])), static_cast<unsigned>(std::stoul(argv[3])));
+    }
+    if (job == "compare" && argc == 6)
+    {
+      return Compare(argv[2], { ReadCT(argv[3]), ReadLabels(argv[4]), std::stoi(argv[5]) });
     }
     if (job == "time" && argc > 4)
     {
@@ -298,7 +342,7 @@ main(int argc, char * argv[])
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX COUNT... | time L1.vtu REPEAT COUNT... | "
-               "property FIRST LAST\n";
+  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX CT LABELS LABEL COUNT... | time L1.vtu REPEAT COUNT... | "
+               "property FIRST LAST | compare MESH.vtu CT LABELS LABEL\n";
   return 2;
 }

@@ -6,8 +6,7 @@
 makes first levels with `bonetk build` (kept in the folder of --models), simplifies them to the 6,138 and 2,438 cells of the
 paper's Table 3 with boneSimplificationValidation, compares with VTK's decimation, simplifies 1,000 random meshes under random
 bounds, measures time against size, and writes Documentation/validation/simplification.md. --check names an independent
-checker, called as PROGRAM MESH.vtu [--label LABELS --label-value V --ct CT] --json OUT, which must exit 0 for a valid mesh
-and measures the density error at the voxels. --only takes the bones whose name has TEXT in it, prints and writes no report;
+checker, called as PROGRAM MESH.vtu --json OUT, which must exit 0 for a valid mesh. --only takes the bones whose name has TEXT in it, prints and writes no report;
 --part takes one part of the report: levels, vtk, property or time. About an hour on two cores."""
 
 import argparse
@@ -46,9 +45,12 @@ def table(head, rows):
 class Bone:
     """Where a bone comes from: CT and labels of a patient, or what a phantom is made of."""
 
-    def __init__(self, name, ct=None, labels=None, label=None, phantom=None, axis="z", fully=True):
+    def __init__(self, name, ct=None, labels=None, label=None, phantom=None, axis="z"):
         self.name, self.ct, self.labels, self.label = name, ct, labels, label
-        self.phantom, self.axis, self.fully = phantom, axis, fully
+        self.phantom, self.axis = phantom, axis
+
+    def images(self):
+        return self.ct, self.labels, self.label or 0
 
     def options(self):
         return ["--label", self.label] if self.label else []
@@ -62,10 +64,10 @@ def bones(data):
         found = [Bone(HIP, *hip, 2), Bone("clinical femur", *hip, 1), Bone("tibia", *tibia, 2)]
     for kind in ("femur", "hemipelvis"):
         for subject in range(3):
-            found.append(Bone(f"phantom {kind} {subject}", phantom=["--bone", kind, "--subject", subject], fully=subject == 0))
+            found.append(Bone(f"phantom {kind} {subject}", phantom=["--bone", kind, "--subject", subject]))
     if data:
         for shape in sorted(pathlib.Path(data, "femur_shapes").glob("*.ply")):
-            found.append(Bone(f"femur shape {shape.stem}", phantom=["--surface", shape], axis="x", fully=False))
+            found.append(Bone(f"femur shape {shape.stem}", phantom=["--surface", shape], axis="x"))
     return found
 
 
@@ -93,14 +95,12 @@ class Validation:
                 "-o", model, "-q")
         return model / "model_L1.vtu"
 
-    def checked(self, mesh, bone, fully):
+    def checked(self, mesh):
         """What the independent checker finds; without one, what bonetk does."""
         if not self.check:
             return {"valid": subprocess.run([self.bonetk, "validate", mesh], capture_output=True, check=False).returncode == 0}
         out = self.folder / "check.json"
-        more = ["--ct", bone.ct, "--label", bone.labels] if fully else []
-        more += ["--label-value", bone.label] if fully and bone.label else []
-        done = subprocess.run([str(part) for part in ("/usr/bin/python3", self.check, mesh, *more, "--json", out)],
+        done = subprocess.run([str(part) for part in ("/usr/bin/python3", self.check, mesh, "--json", out)],
                               capture_output=True, check=False)
         info = json.loads(out.read_text())["info"]
         bad = sum(r["bad_edges"] + r["pinched_vertices"] for r in info.get("regions_inward", {}).values())
@@ -108,9 +108,9 @@ class Validation:
 
     def hierarchy(self, bone):
         prefix = self.folder / "h"
-        found = json.loads(run(self.program, "levels", self.first_level(bone), prefix, *COUNTS))
+        found = json.loads(run(self.program, "levels", self.first_level(bone), prefix, *bone.images(), *COUNTS))
         for number, level in enumerate(found["levels"], 1):
-            level["check"] = self.checked(f"{prefix}_L{number}.vtu", bone, bone.fully)
+            level["check"] = self.checked(f"{prefix}_L{number}.vtu")
             level["coefficients"] = 20 * level["tetrahedra"]
             if number > 1:
                 self.failed += [f"{bone.name}, level {number}: {what}" for what in misses(level, BARS[number - 2])]
@@ -123,10 +123,6 @@ def distance(level, region):
     """Mean distance between the surface of the union of regions from one inward and that of level 1, the larger way."""
     found = level["regions"][region]
     return max(found["to"]["mean"], found["from"]["mean"])
-
-
-def density(level):
-    return level["check"].get("density")
 
 
 def misses(level, bars):
@@ -146,20 +142,19 @@ def misses(level, bars):
         yield "volume"
     if distance(level, 0) > surface:
         yield f"distance {distance(level, 0):.3f}"
-    if density(level) and density(level)["error_pct_of_range"] > error:
-        yield f"density {density(level)['error_pct_of_range']:.2f} %"
+    if level["density"]["percent"] > error:
+        yield f"density {level['density']['percent']:.2f} %"
 
 
 def level_rows(bone, found):
     for number, level in enumerate(found["levels"], 1):
         volumes = "/".join(f"{100 * r['volumeChange']:+.2f}" for r in level["regions"])
         mean = "/".join(f"{distance(level, k):.2f}" for k in range(len(level["regions"])))
-        error = f"{density(level)['error_pct_of_range']:.2f}" if density(level) else ""
         first = number == 1
         yield (bone.name if first else "", level["tetrahedra"], level["points"], "yes" if level["check"]["valid"] else "NO",
                sum(r["crossing"] for r in level["regions"]), f"{level['angleCortical']:.1f}, {level['angleOther']:.1f}",
                "" if first else volumes, "" if first else mean, "" if first else f"{level['surfaceError']:.1f}",
-               "" if first else f"{level['densityError']:.1f}", error, "" if first else level["stopReason"],
+               "" if first else f"{level['densityError']:.1f}", f"{level['density']['percent']:.2f}", "" if first else level["stopReason"],
                f"{found['processorSeconds']:.1f}" if number == 2 else "")
 
 
@@ -177,11 +172,11 @@ def paper_table(found):
              3: ("512", "2,438", 8.8, 6.5, 137.9, 796.6, "142,672")}
     rows = []
     for number, level in enumerate(found["levels"], 1):
-        info, n = level["check"], level["tetrahedra"]
-        voxels = info["density"]["voxels"]
-        rows.append((number, f"{level['points']:,}", f"{n:,}", f"{info['density']['error_pct_of_range']:.2f}",
-                     f"{info['density']['std_pct']:.2f}", f"{info['volume_mm3'] / n:.1f}", f"{voxels / n:.1f}",
-                     f"{2 * voxels:,}", f"{storage(level):,}"))
+        error, n = level["density"], level["tetrahedra"]
+        voxels = error["voxels"]
+        volume = sum(r["volume"] * (1 + r["volumeChange"]) for r in level["regions"])
+        rows.append((number, f"{level['points']:,}", f"{n:,}", f"{error['percent']:.2f}", f"{error['deviation']:.2f}",
+                     f"{volume / n:.1f}", f"{voxels / n:.1f}", f"{2 * voxels:,}", f"{storage(level):,}"))
         p = paper[number]
         rows.append(("paper", p[0], p[1], p[2], p[3], p[4], p[5], "3,883,996", p[6]))
     return table(("level", "points", "cells", "mean density difference, %", "its deviation, %", "mm³ a cell", "voxels a cell",
@@ -194,7 +189,7 @@ def levels_part(validation, chosen):
         found = validation.hierarchy(bone)
         rows += level_rows(bone, found)
         print(*("| " + " | ".join(map(str, row)) + " |" for row in level_rows(bone, found)), sep="\n", flush=True)
-        if bone.name == HIP and density(found["levels"][0]):
+        if bone.name == HIP:
             refused = [(number, *level["refused"].values()) for number, level in enumerate(found["levels"][1:], 2)]
             out += ["## The paper's Table 3, on the clinical hip\n", paper_table(found),
                     "CT: two bytes for each voxel inside. Model: points of three floats, four ids, degree and region a cell, a float a",
@@ -245,6 +240,10 @@ def decimated(first, count, scale, out):
     found = numpy.array([region[t] if t >= 0 else 0 for t in at], numpy.int32)
     edges = points[cells[:, 1:]] - points[cells[:, :1]]
     volume = numpy.linalg.det(edges) / 6
+    normals = numpy.stack([numpy.cross(points[cells[:, b]] - points[cells[:, a]], points[cells[:, c]] - points[cells[:, a]])
+                           for a, b, c in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))], 1)
+    normals /= numpy.maximum(numpy.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
+    cosine = max((-(normals[:, i] * normals[:, j]).sum(1)).max() for i in range(4) for j in range(i))
     new = convert.vtk_to_numpy(result.GetPointData().GetArray("Density")).astype(float) / scale
     for name, data in (("DensityCoefficients", new[cells]), ("Degree", numpy.ones(len(cells), numpy.int32)), ("Region", found)):
         array = convert.numpy_to_vtk(numpy.ascontiguousarray(data), deep=True)
@@ -255,6 +254,7 @@ def decimated(first, count, scale, out):
     writer.SetInputData(result)
     writer.Write()
     return {"seconds": seconds, "cells": len(cells), "inverted": int((volume <= 0).sum()),
+            "angle": numpy.degrees(numpy.arccos(min(1, cosine))),
             "volumes": {k: volume[found == k].sum() for k in numpy.unique(region)}}
 
 
@@ -264,32 +264,26 @@ def vtk_part(validation, bone):
     run(validation.bonetk, "fit", bone.ct, first, "--degree", 1, "-o", linear, "-q")
     rows = []
     for degree, mesh in ((3, first), (1, linear)):
-        found = json.loads(run(validation.program, "levels", mesh, validation.folder / "v", *COUNTS))
+        found = json.loads(run(validation.program, "levels", mesh, validation.folder / "v", *bone.images(), *COUNTS))
         volumes = [region["volume"] for region in found["levels"][0]["regions"]]
-        for number, level in enumerate(found["levels"][1:], 2):
-            info = validation.checked(f"{validation.folder}/v_L{number}.vtu", bone, True)
-            rows.append((f"BoneTK, degree {degree}", level["tetrahedra"], info.get("inverted_or_flat", 0),
-                         "/".join(f"{100 * r['volumeChange']:+.2f}" for r in level["regions"]), *against_ct(info),
-                         f"{min(level['angleCortical'], level['angleOther']):.2f}", f"{found['processorSeconds']:.1f} (both levels)"))
+        for level in found["levels"][1:]:
+            rows.append((f"BoneTK, degree {degree}", level["tetrahedra"], 0 if level["valid"] else "NOT VALID",
+                         "/".join(f"{100 * r['volumeChange']:+.2f}" for r in level["regions"]), f"{level['density']['percent']:.2f}",
+                         f"{level['density']['uncovered']:.1f}", f"{min(level['angleCortical'], level['angleOther']):.2f}",
+                         f"{found['processorSeconds']:.1f} (both levels)"))
     for scale, unit in ((1, "HU"), (0.01, "HU/100")):
         for count in COUNTS:
             out = validation.folder / "decimated.vtu"
             found = decimated(first, count, scale, out)
-            info = validation.checked(out, bone, True)
+            error = json.loads(run(validation.program, "compare", out, *bone.images()))
             change = "/".join(f"{100 * (v / volumes[k - 1] - 1):+.2f}" for k, v in found["volumes"].items())
-            rows.append((f"VTK, density in {unit}", found["cells"], found["inverted"], change, *against_ct(info),
-                         f"{info.get('dihedral_min_deg', 0):.2f}", f"{found['seconds']:.1f}"))
+            rows.append((f"VTK, density in {unit}", found["cells"], found["inverted"], change, f"{error['percent']:.2f}",
+                         f"{error['uncovered']:.1f}", f"{found['angle']:.2f}", f"{found['seconds']:.1f}"))
     head = ("method", "cells", "inverted or flat", "regions' volumes, %", "density error, %", "label uncovered, %",
             "least angle", "s")
     return "\n".join([f"## Against VTK's tetrahedral decimation, {bone.name}\n", table(head, rows),
                       "`vtkUnstructuredGridQuadricDecimation` has no regions: each of its cells has that of level 1 at its centroid. It keeps",
                       "densities at points, so that its degree is 1.\n"])
-
-
-def against_ct(info):
-    if "density" not in info:
-        return "", ""
-    return f"{info['density']['error_pct_of_range']:.2f}", f"{info['label_uncovered_pct']:.1f}"
 
 
 def property_part(validation):

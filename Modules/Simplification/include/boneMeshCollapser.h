@@ -22,7 +22,7 @@ namespace bone
 /** Weights and bounds of the collapse; the terms of the cost are in mm^3. */
 struct CollapseParameters
 {
-  double densityWeight{ 1.0 };  ///< of the squared density error, as a share of the density's range, integrated
+  double densityWeight{ 3.0 };  ///< of the squared density error, as a share of the density's range, integrated
   double surfaceWeight{ 1.0 };  ///< 1/mm, of the squared distance of boundary and interfaces, integrated
   double volumeWeight{ 200.0 }; ///< of the growth of each region's squared volume error over its volume
   double shapeWeight{ 0.05 };   ///< of the cells' volume, where their smallest dihedral angle is small

@@ -101,7 +101,7 @@ public:
   /** The same for cells of the cortical layer, which has room for less where it is thin; default 1.5 degrees. */
   itkSetMacro(MinimumCorticalDihedralAngle, double);
   itkGetConstMacro(MinimumCorticalDihedralAngle, double);
-  /** Weights of the cost, see \ref MeshCollapser: of the density error, default 1; */
+  /** Weights of the cost, see \ref MeshCollapser: of the density error, default 3; */
   itkSetMacro(DensityWeight, double);
   itkGetConstMacro(DensityWeight, double);
   /** of the distance of boundary and interfaces, 1/mm, default 1; */
@@ -150,7 +150,7 @@ private:
   double                   m_MinimumDihedralAngle{ CollapseParameters().minimumAngle };
   double                   m_MinimumCorticalDihedralAngle{ CollapseParameters().minimumCorticalAngle };
   int                      m_MaximumDegree{ -1 };
-  double                   m_DensityWeight{ 1.0 };
+  double                   m_DensityWeight{ CollapseParameters().densityWeight };
   double                   m_SurfaceWeight{ 1.0 };
   double                   m_VolumeWeight{ 200.0 };
   std::vector<LevelReport> m_Report;

@@ -16,8 +16,20 @@ namespace bone
 {
 namespace
 {
-/** More samples than this around a vertex are thinned out for the estimate. */
-constexpr std::size_t EnoughSamples = 300;
+/** More samples than this around a vertex or in a cell are thinned out for the estimate. */
+constexpr std::size_t EnoughSamples = 120;
+
+/** Every stride-th value. */
+std::vector<int>
+Thinned(const std::vector<int> & values, std::size_t stride)
+{
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < values.size(); i += stride)
+  {
+    kept.push_back(values[i]);
+  }
+  return kept;
+}
 
 int
 TermCount(int degree)
@@ -169,21 +181,12 @@ DensitySamples::RemovalCost(const TetraComplex & complex, IdType v) const
   const std::size_t stride = count / EnoughSamples + 1;
   for (auto & region : regions)
   {
-    std::vector<int> & samples = region.second;
+    const std::vector<int> & samples = region.second;
     if (samples.empty())
     {
       continue;
     }
-    if (stride > 1)
-    {
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < samples.size(); i += stride)
-      {
-        samples[kept++] = samples[i];
-      }
-      samples.resize(kept);
-    }
-    cost += static_cast<double>(stride) * FitResidual(samples);
+    cost += static_cast<double>(stride) * FitResidual(stride > 1 ? Thinned(samples, stride) : samples);
   }
   return std::max(0.0, cost - now);
 }
@@ -248,7 +251,10 @@ DensitySamples::GiveTo(const TetraComplex &        complex,
   }
   for (IdType t : cells)
   {
-    m_CellError[t] = m_InCell[t].empty() ? 0.0 : FitResidual(m_InCell[t]);
+    const std::size_t stride = m_InCell[t].size() / EnoughSamples + 1;
+    m_CellError[t] = m_InCell[t].empty()
+                       ? 0.0
+                       : static_cast<double>(stride) * FitResidual(stride > 1 ? Thinned(m_InCell[t], stride) : m_InCell[t]);
   }
 }
 } // namespace bone

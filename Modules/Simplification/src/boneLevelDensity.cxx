@@ -47,38 +47,22 @@ Widen(MeshArrays & level, int degree)
   level.maximumDegree = degree;
 }
 
-/** Points and weights of 24, exact to degree 6. P. Keast, "Moderate-degree tetrahedral quadrature formulas", Comput.
- * Methods Appl. Mech. Eng. 55 (1986). */
-std::vector<std::pair<Barycentric, double>>
-QuadratureOfDegree6()
+/** Points a cell of IntegratedError. Rules of fixed points keep away from faces, where the error is largest. */
+constexpr std::size_t IntegrationPoints = 24;
+
+/** Point k of a sequence that fills a tetrahedron evenly: additive recurrence in a cube by powers of the root of g^4 = g +
+ * 1, sorted coordinates. */
+Barycentric
+EvenlySpread(std::size_t k)
 {
-  std::vector<std::pair<Barycentric, double>> rule;
-  constexpr double                            Single[3][2] = { { 0.2146028712591517, 0.0066537917096945820 * 6 },
-                                                               { 0.0406739585346113, 0.0016795351758867834 * 6 },
-                                                               { 0.3223378901422757, 0.0092261969239424996 * 6 } };
-  for (const auto & orbit : Single)
+  constexpr double G = 1.22074408460575947536;
+  double           u[3] = { 0.5 + k / G, 0.5 + k / (G * G), 0.5 + k / (G * G * G) };
+  for (double & x : u)
   {
-    for (int i = 0; i < 4; ++i)
-    {
-      Barycentric mu = Barycentric::Constant(orbit[0]);
-      mu[i] = 1.0 - 3.0 * orbit[0];
-      rule.emplace_back(mu, orbit[1]);
-    }
+    x -= std::floor(x);
   }
-  for (int i = 0; i < 4; ++i)
-  {
-    for (int j = 0; j < 4; ++j)
-    {
-      if (i != j)
-      {
-        Barycentric mu = Barycentric::Constant(0.0636610018750175);
-        mu[i] = 0.2696723314583159;
-        mu[j] = 1.0 - 2.0 * 0.0636610018750175 - 0.2696723314583159;
-        rule.emplace_back(mu, 0.0080357142857142857 * 6);
-      }
-    }
-  }
-  return rule;
+  std::sort(u, u + 3);
+  return { u[0], u[1] - u[0], u[2] - u[1], 1.0 - u[2] };
 }
 
 /** The sample of a cell that is nearest to x. */
@@ -211,7 +195,6 @@ LevelDensity::IntegratedError(const MeshArrays & finest, const MeshArrays & leve
 {
   const std::size_t   count = finest.tetrahedra.size(), rowFinest = BernsteinCount(finest.maximumDegree);
   const std::size_t   row = BernsteinCount(level.maximumDegree);
-  const auto          rule = QuadratureOfDegree6();
   const TetraLocator  locator(level);
   std::vector<IdType> start(count, 0);
   for (std::size_t t = 0; t < m_CellSlot.size(); ++t)
@@ -227,14 +210,15 @@ LevelDensity::IntegratedError(const MeshArrays & finest, const MeshArrays & leve
     const auto & p = finest.points;
     IdType       at = start[t];
     volumes[t] = SignedVolume(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
-    for (const auto & [mu, weight] : rule)
+    for (std::size_t k = 0; k < IntegrationPoints; ++k)
     {
+      const Barycentric  mu = EvenlySpread(t * IntegrationPoints + k);
       const Vector3      x = mu[0] * p[v[0]] + mu[1] * p[v[1]] + mu[2] * p[v[2]] + mu[3] * p[v[3]];
       const CellLocation place = locator.FindNearest(x, at);
       at = place.cell;
       const double error = BernsteinValue(finest.degree[t], &finest.coefficients[rowFinest * t], mu) -
                            BernsteinValue(level.degree[at], &level.coefficients[row * at], place.mu);
-      squares[t] += weight * volumes[t] * error * error;
+      squares[t] += volumes[t] / IntegrationPoints * error * error;
     }
   });
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);

@@ -34,5 +34,5 @@ Simplify(benchmark::State & state)
   state.SetComplexityN(n);
   state.counters["tetrahedra"] = n;
 }
-BENCHMARK(Simplify)->Arg(13)->Arg(52)->Arg(208)->Unit(benchmark::kMillisecond)->Complexity();
+BENCHMARK(Simplify)->Arg(13)->Arg(52)->Arg(208)->Arg(833)->Unit(benchmark::kMillisecond)->Complexity();
 } // namespace
