@@ -49,10 +49,10 @@ FindObstacle(const std::vector<Vector3> &  points,
  * Per tetrahedron and view: the depths of its four face planes, affine in the pixel; the density as a polynomial in
  * pixel offset and depth about the cell's centre. Per column of pixels: that polynomial at the column. Per pixel: entry
  * at the smallest front, exit at the largest back depth, the polynomial's exact integral between them. Single
- * precision inside with depths relative to the cell, double for its geometry and for cells that are ill-conditioned seen
- * from the source; cells that reach behind the source, near it, or through the detector go through a general path. Uses
- * AVX2 or AVX-512 where the processor has it. `images` has one image for each of `views`; these share one loop, so that
- * small views keep all threads busy. Error about 1e-6 of the image's largest value. */
+ * precision inside with depths relative to the cell, double for its geometry and for cells that are ill-conditioned
+ * seen from the source; cells that reach behind the source, near it, or through the detector go through a general path.
+ * Uses AVX2 or AVX-512 where the processor has it. `images` has one image for each of `views`; these share one loop, so
+ * that small views keep all threads busy. Error about 1e-6 of the image's largest value. */
 void
 ProjectMesh(const std::vector<Vector3> &            points,
             const MeshArrays &                      cells,
