@@ -314,7 +314,7 @@ main(int argc, char * argv[])
 {
   const std::string         job = argc > 1 ? argv[1] : "";
   std::vector<IdType>       counts;
-  for (int i = job == "levels" ? 7 : 4; i < argc; ++i)
+  for (int i = job == "levels" ? 7 : job == "time" ? 4 : argc; i < argc; ++i)
   {
     counts.push_back(std::stoi(argv[i]));
   }

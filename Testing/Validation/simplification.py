@@ -244,7 +244,7 @@ def decimated(first, count, scale, out):
                            for a, b, c in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))], 1)
     normals /= numpy.maximum(numpy.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
     cosine = max((-(normals[:, i] * normals[:, j]).sum(1)).max() for i in range(4) for j in range(i))
-    new = convert.vtk_to_numpy(result.GetPointData().GetArray("Density")).astype(float) / scale
+    new = convert.vtk_to_numpy(result.GetPointData().GetScalars() or result.GetPointData().GetArray(0)).astype(float) / scale
     for name, data in (("DensityCoefficients", new[cells]), ("Degree", numpy.ones(len(cells), numpy.int32)), ("Region", found)):
         array = convert.numpy_to_vtk(numpy.ascontiguousarray(data), deep=True)
         array.SetName(name)

@@ -78,6 +78,7 @@ struct FlipParameters
   double        targetAngle{ 0.35 }; ///< rad; cells whose smallest dihedral angle is below are looked at
   int           maximumPasses{ 6 };  ///< each pass goes over all such cells
   FlipCellCount cellCount{ FlipCellCount::Any };
+  IdType        minimumCells{ 0 }; ///< no flip makes fewer cells than this
 };
 
 struct FlipReport

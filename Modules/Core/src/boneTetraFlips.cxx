@@ -263,7 +263,9 @@ public:
     {
       const IdType a = cell[edge[0]], b = cell[edge[1]];
       const std::size_t ring = m_Parameters.cellCount == FlipCellCount::Any ? 4 : RingLength(a, b);
-      if (ring > 4 || (ring < 4 && m_Parameters.cellCount == FlipCellCount::Same))
+      const bool fewer =
+        m_Parameters.cellCount != FlipCellCount::Same && m_Complex.AliveCells() > m_Parameters.minimumCells;
+      if (ring > 4 || (ring < 4 && !fewer))
       {
         continue;
       }

@@ -54,9 +54,9 @@ public:
   std::size_t
   Run(IdType target, const std::function<void()> & progress = {});
 
-  /** Flips at cells below the angle (rad). Returns the number of flips. */
+  /** Flips at cells below the angle (rad), which make no fewer cells than \a minimumCells. Returns their number. */
   std::size_t
-  Flip(double angle, FlipCellCount cellCount);
+  Flip(double angle, FlipCellCount cellCount, IdType minimumCells);
 
   /** Bound on the distance of boundary and interfaces to those of the finest level, both ways, mm; default infinity.
    * Must not descend. \pre CollapseParameters::boundDistance. */
@@ -148,7 +148,7 @@ private:
   void
   UpdateGrid(IdType v, bool insert);
   void
-  Refresh();
+  Refresh(IdType minimumCells);
   bool
   Requeue();
   void

@@ -104,9 +104,9 @@ bool
 HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const std::function<void()> & progress)
 {
   level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), progress);
-  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore);
+  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore, target);
   level.collapses += m_Collapser->Run(target, progress);
-  m_Collapser->Flip(FlipAngle, FlipCellCount::Same);
+  m_Collapser->Flip(FlipAngle, FlipCellCount::Same, target);
   return m_Collapser->Complex().AliveCells() <= target;
 }
 

@@ -397,7 +397,7 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
       // Volumes are bounded for whole regions, so that what was refused may have become allowed from afar.
       if (m_Stale)
       {
-        Refresh();
+        Refresh(target);
         continue;
       }
       NoteWhyParked();
@@ -430,7 +430,7 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
     m_Stale = true;
     if (m_Complex.AliveCells() < m_RefreshAt)
     {
-      Refresh();
+      Refresh(target);
     }
     if (progress && collapses % 64 == 0)
     {
@@ -441,9 +441,9 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
 }
 
 void
-MeshCollapser::Refresh()
+MeshCollapser::Refresh(IdType minimumCells)
 {
-  Flip(FlipAngle, FlipCellCount::NotMore);
+  Flip(FlipAngle, FlipCellCount::NotMore, minimumCells);
   m_RefreshAt = static_cast<IdType>(RefreshShare * m_Complex.AliveCells());
   m_Stale = false;
   m_Queue = {};
@@ -466,11 +466,12 @@ MeshCollapser::Refresh()
 }
 
 std::size_t
-MeshCollapser::Flip(double angle, FlipCellCount cellCount)
+MeshCollapser::Flip(double angle, FlipCellCount cellCount, IdType minimumCells)
 {
   FlipParameters parameters;
   parameters.targetAngle = angle;
   parameters.cellCount = cellCount;
+  parameters.minimumCells = minimumCells;
   const auto report = ImproveByFlips(m_Complex, parameters, [this](const FlipResult & flip) {
     m_Changed.resize(m_Complex.Size(), 0);
     m_Densities.GiveTo(m_Complex, m_Densities.TakeFrom(flip.removed), flip.created);
