@@ -82,8 +82,19 @@ DihedralAngles(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Ve
 double
 LargestDihedralCosine(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
 {
-  const std::array<double, 6> cosines = DihedralCosines(a, b, c, d);
-  return *std::max_element(cosines.begin(), cosines.end());
+  // Normals of the faces opposite b, c and d; that opposite a looks along -n0.
+  const Vector3 ab = b - a, ac = c - a, ad = d - a;
+  const Vector3 n1 = ad.cross(ac), n2 = ab.cross(ad), n3 = ac.cross(ab);
+  const Vector3 n0 = n1 + n2 + n3;
+  const double  q0 = n0.squaredNorm(), q1 = n1.squaredNorm(), q2 = n2.squaredNorm(), q3 = n3.squaredNorm();
+  if (!(q0 > 0 && q1 > 0 && q2 > 0 && q3 > 0))
+  {
+    return 1.0;
+  }
+  const double r0 = 1.0 / std::sqrt(q0), r1 = 1.0 / std::sqrt(q1), r2 = 1.0 / std::sqrt(q2), r3 = 1.0 / std::sqrt(q3);
+  const double outer = std::max({ n0.dot(n1) * r1, n0.dot(n2) * r2, n0.dot(n3) * r3 }) * r0;
+  const double inner = std::max({ -n1.dot(n2) * r1 * r2, -n1.dot(n3) * r1 * r3, -n2.dot(n3) * r2 * r3 });
+  return std::clamp(std::max(inner, outer), -1.0, 1.0);
 }
 
 double

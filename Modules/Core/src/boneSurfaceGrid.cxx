@@ -61,6 +61,34 @@ SegmentsMeet2D(const Vector2 & p, const Vector2 & q, const Vector2 & r, const Ve
   return a * b <= 0 && c * d <= 0;
 }
 
+/** Orient3D in arithmetic of type T; false where that leaves it open. */
+template <typename T>
+bool
+SideOf(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d, int & side)
+{
+  constexpr T           epsilon = std::numeric_limits<T>::epsilon() / 2;
+  T                     m[3][3];
+  const Vector3 * const points[3] = { &b, &c, &d };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      m[i][k] = T((*points[i])[k]) - T(a[k]);
+    }
+  }
+  T det = 0, permanent = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const T p = m[1][(k + 1) % 3] * m[2][(k + 2) % 3], q = m[1][(k + 2) % 3] * m[2][(k + 1) % 3];
+    det += m[0][k] * (p - q);
+    permanent += std::abs(m[0][k]) * (std::abs(p) + std::abs(q));
+  }
+  // Shewchuk's static bound, with some slack.
+  const T bound = 10 * epsilon * permanent + T(1e-280);
+  side = det > 0 ? 1 : -1;
+  return std::abs(det) > bound;
+}
+
 /** Orient3D with two steps before its rational arithmetic: neighbouring triangles are often coplanar but for rounding,
  * or exactly so in a plane of the coordinate system. */
 int
@@ -73,27 +101,8 @@ Side(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
       return 0;
     }
   }
-  using Long = long double;
-  constexpr Long        epsilon = std::numeric_limits<Long>::epsilon() / 2;
-  Long                  m[3][3];
-  const Vector3 * const points[3] = { &b, &c, &d };
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      m[i][k] = Long((*points[i])[k]) - Long(a[k]);
-    }
-  }
-  Long det = 0, permanent = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const Long p = m[1][(k + 1) % 3] * m[2][(k + 2) % 3], q = m[1][(k + 2) % 3] * m[2][(k + 1) % 3];
-    det += m[0][k] * (p - q);
-    permanent += std::abs(m[0][k]) * (std::abs(p) + std::abs(q));
-  }
-  // Shewchuk's static bound, with some slack.
-  const Long bound = 10 * epsilon * permanent + Long(1e-280);
-  return det > bound ? 1 : -det > bound ? -1 : Orient3D(a, b, c, d);
+  int side = 0;
+  return SideOf<double>(a, b, c, d, side) || SideOf<long double>(a, b, c, d, side) ? side : Orient3D(a, b, c, d);
 }
 
 bool

@@ -117,15 +117,17 @@ FindRing(const TetraComplex & complex, IdType a, IdType b, Ring & ring)
   return MeshOperation::Done;
 }
 
-/** Best triangulation of a ring's polygon: worst cosine of the two cells on each triangle, minimised. */
+/** Best triangulation of a ring's polygon: worst cosine of the two cells on each triangle, minimised. One that is not
+ * below `limit` is of no use, and is not looked for. */
 class RingTriangulation
 {
 public:
-  RingTriangulation(const TetraComplex & complex, const Ring & ring, IdType a, IdType b)
+  RingTriangulation(const TetraComplex & complex, const Ring & ring, IdType a, IdType b, double limit)
     : m_Complex(complex)
     , m_Points(ring.points)
     , m_A(a)
     , m_B(b)
+    , m_Limit(limit)
   {
     const int n = static_cast<int>(m_Points.size());
     for (int width = 2; width < n; ++width)
@@ -137,6 +139,7 @@ public:
     }
   }
 
+  /** 2 where all are refused. */
   double
   Worst() const
   {
@@ -162,22 +165,30 @@ private:
   void
   Solve(int i, int j)
   {
-    m_Cost[i][j] = std::numeric_limits<double>::max();
+    m_Cost[i][j] = 2.0;
+    double limit = m_Limit;
     for (int k = i + 1; k < j; ++k)
     {
       double cost = std::max(k > i + 1 ? m_Cost[i][k] : -1.0, j > k + 1 ? m_Cost[k][j] : -1.0);
       for (const Id4 & cell : CellsAt(i, k, j))
       {
-        const auto & p = m_Complex.Points();
-        const bool   positive = SignedVolume(p[cell[0]], p[cell[1]], p[cell[2]], p[cell[3]]) > 0;
-        cost = std::max(cost, positive ? Cosine(m_Complex, cell) : 2.0);
+        cost = cost < limit ? std::max(cost, CosineIfPositive(cell)) : 2.0;
       }
-      if (cost < m_Cost[i][j])
+      if (cost < limit)
       {
+        limit = cost;
         m_Cost[i][j] = cost;
         m_Split[i][j] = k;
       }
     }
+  }
+
+  double
+  CosineIfPositive(const Id4 & cell) const
+  {
+    const auto & p = m_Complex.Points();
+    const bool   positive = SignedVolume(p[cell[0]], p[cell[1]], p[cell[2]], p[cell[3]]) > 0;
+    return positive ? Cosine(m_Complex, cell) : 2.0;
   }
 
   void
@@ -200,6 +211,7 @@ private:
   const std::vector<IdType> & m_Points;
   IdType                      m_A;
   IdType                      m_B;
+  double                      m_Limit;
   double                      m_Cost[MaximumEdgeRing][MaximumEdgeRing];
   int                         m_Split[MaximumEdgeRing][MaximumEdgeRing];
 };
@@ -366,10 +378,10 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
   {
     before = std::max(before, CellCosine(complex, t));
   }
-  const RingTriangulation triangulation(complex, ring, a, b);
+  const RingTriangulation triangulation(complex, ring, a, b, before - MinimumGain);
   if (!(triangulation.Worst() < before - MinimumGain))
   {
-    result.outcome = triangulation.Worst() >= 2.0 ? MeshOperation::Orientation : MeshOperation::Quality;
+    result.outcome = MeshOperation::Quality;
     return result;
   }
   return Commit(complex, ring.cells, triangulation.Cells(), before);
@@ -468,7 +480,7 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b)
     {
       std::reverse(side.points.begin(), side.points.end());
     }
-    const RingTriangulation triangulation(complex, side, a, b);
+    const RingTriangulation triangulation(complex, side, a, b, before - MinimumGain);
     after = std::max(after, triangulation.Worst());
     if (!(after < before - MinimumGain))
     {
