@@ -30,6 +30,7 @@ BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
   m_MedialAxis->SetInput(m_Resample->GetOutput());
   m_Tiling->SetInput(m_MedialAxis->GetOutput());
   m_Quality->SetInput(m_Tiling->GetOutput());
+  m_Quality->SetContours(m_Snake->GetOutput());
   m_Fit->SetMesh(m_Quality->GetOutput());
   m_Collapse->SetInput(m_Fit->GetOutput());
   for (std::size_t level = 0; level < numberOfLevels; ++level)

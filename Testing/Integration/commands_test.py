@@ -25,7 +25,7 @@ class Commands(TestCase):
         self.succeed("mesh", "c.vtp", "--ct", "ct.nii.gz", "-o", "m2.vtu")
         for method in ("laplacian", "smart", "enhanced"):
             self.succeed("smooth", "m.vtu", "--method", method, "--iterations", 2, "-o", method + ".vtu")
-        self.succeed("smooth", "m.vtu", "--swap", "--iterations", 2, "-o", "s.vtu")
+        self.succeed("smooth", "m.vtu", "--iterations", 2, "-o", "s.vtu")
         self.succeed("fit", "ct.nii.gz", "s.vtu", "--degree", 2, "-o", "d.vtu")
         self.succeed("fit", "ct.nii.gz", "d.vtu", "--degree", 1, "--continuous", "-o", "d1.vtu")
         self.succeed("simplify", "d.vtu", "--tetrahedra", 2500, 1500, "-o", "h")
@@ -164,7 +164,7 @@ class Commands(TestCase):
             self.succeed("contours", f"ct{subject}.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8,
                          "-o", "c.vtp")
             self.succeed("mesh", "c.vtp", "-o", "m.vtu")
-            self.succeed("smooth", "m.vtu", "--swap", "-o", f"m{subject}.vtu")
+            self.succeed("smooth", "m.vtu", "-o", f"m{subject}.vtu")
             lines.append(f"m{subject}.vtu, ct{subject}.nii.gz")
         with open("subjects.txt", "w") as file:
             file.write("# shape, CT\n" + "\n".join(lines) + "\n")

@@ -1,11 +1,13 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// boneQualityValidation tile CT LABELS LABEL AXIS MESH.vtu: the tiled mesh of `bonetk build` before its quality stage.
-// boneQualityValidation improve MESH.vtu OUT.vtu BOUND [LABELS LABEL]: runs the quality stage, prints a "name value" a
-// line. boneQualityValidation methods MESH.vtu: volume and inversions of the three smoothing methods by iterations.
+// boneQualityValidation tile CT LABELS LABEL AXIS MESH.vtu CONTOURS.vtp: the tiled mesh of `bonetk build` before its
+// quality stage, and the contours of all slices. boneQualityValidation improve MESH.vtu OUT.vtu BOUND CONTOURS.vtp
+// LABELS LABEL: runs the quality stage, prints a "name value" a line; CONTOURS and LABELS may be empty.
+// boneQualityValidation methods MESH.vtu: volume and inversions of the three smoothing methods by iterations.
 #include "boneBoneImage.h"
 #include "boneMeshImageMetrics.h"
+#include "boneContourIO.h"
 #include "boneMeshIO.h"
 #include "boneDensityImageFilter.h"
 #include "boneMeshValidator.h"
@@ -22,6 +24,7 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <optional>
 
 namespace
 {
@@ -339,7 +342,12 @@ PrintAgreement(const std::string &      when,
 }
 
 int
-Improve(const std::string & input, const std::string & output, double bound, const std::string & labels, int label)
+Improve(const std::string & input,
+        const std::string & output,
+        double              bound,
+        const std::string & contours,
+        const std::string & labels,
+        int                 label)
 {
   const MeshArrays before = bone::ReadMeshArrays(input);
   PrintQuality("before", before);
@@ -358,6 +366,12 @@ Improve(const std::string & input, const std::string & output, double bound, con
   bone::TetraComplex          complex(before);
   bone::ImprovementParameters parameters;
   parameters.distanceBound = bound;
+  std::optional<bone::ContourShape> shape;
+  if (!contours.empty())
+  {
+    shape.emplace(*bone::ReadContours(contours));
+    parameters.shape = &*shape;
+  }
   const auto          start = std::chrono::steady_clock::now();
   const std::clock_t  clock = std::clock();
   const auto          report = bone::ImproveMesh(complex, parameters);
@@ -437,7 +451,8 @@ Tile(const std::string & ct,
      const std::string & labels,
      int                 label,
      const std::string & axis,
-     const std::string & output)
+     const std::string & output,
+     const std::string & contours)
 {
   auto                image = bone::ReadCT(ct);
   auto                map = bone::ReadLabels(labels);
@@ -457,6 +472,7 @@ Tile(const std::string & ct,
                          { tetrahedra, spacing, false },
                          [](const bone::Resolution &, IdType) {});
   bone::WriteMeshArrays(pipeline.GetTiling()->GetOutput()->GetArrays(), output);
+  bone::WriteContours(pipeline.GetSnake()->GetOutput(), contours);
   return 0;
 }
 } // namespace
@@ -467,14 +483,13 @@ main(int argc, char * argv[])
   const std::string command = argc > 1 ? argv[1] : "";
   try
   {
-    if (command == "tile" && argc == 7)
+    if (command == "tile" && argc == 8)
     {
-      return Tile(argv[2], argv[3], std::stoi(argv[4]), argv[5], argv[6]);
+      return Tile(argv[2], argv[3], std::stoi(argv[4]), argv[5], argv[6], argv[7]);
     }
-    if (command == "improve" && (argc == 5 || argc == 7))
+    if (command == "improve" && argc == 8)
     {
-      return Improve(
-        argv[2], argv[3], std::stod(argv[4]), argc == 7 ? argv[5] : "", argc == 7 ? std::stoi(argv[6]) : 0);
+      return Improve(argv[2], argv[3], std::stod(argv[4]), argv[5], argv[6], std::stoi(argv[7]));
     }
     if (command == "methods" && argc == 3)
     {
@@ -486,8 +501,8 @@ main(int argc, char * argv[])
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: boneQualityValidation tile CT LABELS LABEL AXIS MESH.vtu\n"
-               "       boneQualityValidation improve MESH.vtu OUT.vtu BOUND [LABELS LABEL]\n"
+  std::cerr << "usage: boneQualityValidation tile CT LABELS LABEL AXIS MESH.vtu CONTOURS.vtp\n"
+               "       boneQualityValidation improve MESH.vtu OUT.vtu BOUND CONTOURS.vtp LABELS LABEL\n"
                "       boneQualityValidation methods MESH.vtu\n";
   return 2;
 }

@@ -47,6 +47,16 @@ public:
   Nearest
   FindNearest(const Vector3 & x) const;
 
+  /** Whether a triangle lies within a distance, given squared, of x: quicker than to find the nearest. */
+  bool
+  IsWithin(const Vector3 & x, double squaredDistance) const;
+
+  const Triangle &
+  GetTriangle(int index) const
+  {
+    return m_Triangles[index];
+  }
+
 private:
   struct Node
   {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 namespace bone
 {
@@ -67,18 +68,11 @@ struct Ring
   std::vector<IdType> points;
 };
 
-/** Walks around the edge. Surface where it lies on one, Quality where the ring is too long. */
+/** Walks around the edge from a cell that has it. Surface where it lies on one, Quality where the ring is too long. */
 MeshOperation
-FindRing(const TetraComplex & complex, IdType a, IdType b, Ring & ring)
+FindRing(const TetraComplex & complex, IdType a, IdType b, IdType t, Ring & ring)
 {
-  const auto & star = complex.Star(a);
-  const auto   first = std::find_if(star.begin(), star.end(), [&](IdType t) { return complex.Has(t, b); });
-  if (first == star.end())
-  {
-    return MeshOperation::Topology;
-  }
-  IdType t = *first;
-  int    from = -1, to = -1;
+  int from = -1, to = -1;
   for (int i = 0; i < 4; ++i)
   {
     const IdType p = complex.Cell(t)[i];
@@ -253,7 +247,33 @@ FindHalfRing(const TetraComplex & complex, IdType a, IdType b, IdType first, int
   }
 }
 
-/** Tries all flips at one cell; the first that is done ends it. */
+/** Edge removal from a cell that has the edge: stars may be large. */
+FlipResult
+RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell)
+{
+  FlipResult result;
+  Ring       ring;
+  result.outcome = FindRing(complex, a, b, cell, ring);
+  if (result.outcome != MeshOperation::Done)
+  {
+    return result;
+  }
+  double before = -1.0;
+  for (IdType t : ring.cells)
+  {
+    before = std::max(before, CellCosine(complex, t));
+  }
+  const RingTriangulation triangulation(complex, ring, a, b, before - MinimumGain);
+  if (!(triangulation.Worst() < before - MinimumGain))
+  {
+    result.outcome = MeshOperation::Quality;
+    return result;
+  }
+  return Commit(complex, ring.cells, triangulation.Cells(), before);
+}
+
+/** Tries all flips at one cell; the first that is done ends it. An edge that was refused is not tried again until a
+ * cell at it has changed. */
 class CellImprover
 {
 public:
@@ -265,6 +285,7 @@ public:
     , m_Parameters(parameters)
     , m_Report(report)
     , m_Observer(observer)
+    , m_Changed(complex.Points().size(), 0)
   {}
 
   bool
@@ -274,6 +295,10 @@ public:
     for (const auto & edge : TetraEdges)
     {
       const IdType a = cell[edge[0]], b = cell[edge[1]];
+      if (IsRefused(a, b))
+      {
+        continue;
+      }
       const std::size_t ring = m_Parameters.cellCount == FlipCellCount::Any ? 4 : RingLength(a, b);
       const bool fewer =
         m_Parameters.cellCount != FlipCellCount::Same && m_Complex.AliveCells() > m_Parameters.minimumCells;
@@ -281,10 +306,11 @@ public:
       {
         continue;
       }
-      if (Note(RemoveEdge(m_Complex, a, b)))
+      if (Note(RemoveEdgeAt(m_Complex, a, b, t)))
       {
         return true;
       }
+      m_Refused[Key(a, b)] = m_Report.done;
     }
     for (int i = 0; i < 4 && m_Parameters.cellCount == FlipCellCount::Any; ++i)
     {
@@ -297,6 +323,19 @@ public:
   }
 
 private:
+  static std::uint64_t
+  Key(IdType a, IdType b)
+  {
+    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+  }
+
+  bool
+  IsRefused(IdType a, IdType b) const
+  {
+    const auto found = m_Refused.find(Key(a, b));
+    return found != m_Refused.end() && (m_Changed[a] <= found->second || m_Changed[b] <= found->second);
+  }
+
   std::size_t
   RingLength(IdType a, IdType b) const
   {
@@ -314,6 +353,13 @@ private:
       return false;
     }
     ++m_Report.done;
+    for (IdType t : result.created)
+    {
+      for (IdType p : m_Complex.Cell(t))
+      {
+        m_Changed[p] = m_Report.done;
+      }
+    }
     if (m_Observer)
     {
       m_Observer(result);
@@ -325,6 +371,9 @@ private:
   const FlipParameters & m_Parameters;
   FlipReport &           m_Report;
   const FlipObserver &   m_Observer;
+  /** Flips done when a cell at the point last changed, and when an edge was last refused. */
+  std::vector<std::size_t>                       m_Changed;
+  std::unordered_map<std::uint64_t, std::size_t> m_Refused;
 };
 } // namespace
 
@@ -366,25 +415,15 @@ RemoveFace(TetraComplex & complex, IdType t, int i)
 FlipResult
 RemoveEdge(TetraComplex & complex, IdType a, IdType b)
 {
-  FlipResult result;
-  Ring       ring;
-  result.outcome = FindRing(complex, a, b, ring);
-  if (result.outcome != MeshOperation::Done)
+  const auto & star = complex.Star(a);
+  const auto   first = std::find_if(star.begin(), star.end(), [&](IdType t) { return complex.Has(t, b); });
+  if (first == star.end())
   {
+    FlipResult result;
+    result.outcome = MeshOperation::Topology;
     return result;
   }
-  double before = -1.0;
-  for (IdType t : ring.cells)
-  {
-    before = std::max(before, CellCosine(complex, t));
-  }
-  const RingTriangulation triangulation(complex, ring, a, b, before - MinimumGain);
-  if (!(triangulation.Worst() < before - MinimumGain))
-  {
-    result.outcome = MeshOperation::Quality;
-    return result;
-  }
-  return Commit(complex, ring.cells, triangulation.Cells(), before);
+  return RemoveEdgeAt(complex, a, b, *first);
 }
 
 SurfaceFlip

@@ -156,4 +156,38 @@ TriangleTree::FindNearest(const Vector3 & x) const
   }
   return nearest;
 }
+
+bool
+TriangleTree::IsWithin(const Vector3 & x, double squaredDistance) const
+{
+  std::array<int, 64> stack;
+  int                 waiting = 0;
+  if (!m_Nodes.empty())
+  {
+    stack[waiting++] = 0;
+  }
+  while (waiting > 0)
+  {
+    const int    index = stack[--waiting];
+    const Node & node = m_Nodes[index];
+    if (SquaredDistanceToBox(x, node.lower, node.upper) > squaredDistance)
+    {
+      continue;
+    }
+    for (int i = node.begin; node.right < 0 && i < node.end; ++i)
+    {
+      const Triangle & t = m_Triangles[m_Order[i]];
+      if ((ClosestPointOnTriangle(x, t[0], t[1], t[2]) - x).squaredNorm() <= squaredDistance)
+      {
+        return true;
+      }
+    }
+    if (node.right >= 0)
+    {
+      stack[waiting++] = node.right;
+      stack[waiting++] = index + 1;
+    }
+  }
+  return false;
+}
 } // namespace bone

@@ -100,6 +100,8 @@ TEST(TriangleTree, FindsWhatExhaustiveSearchFinds)
     }
     const auto nearest = tree.FindNearest(x);
     EXPECT_DOUBLE_EQ(nearest.squaredDistance, best);
+    EXPECT_TRUE(tree.IsWithin(x, best));
+    EXPECT_FALSE(tree.IsWithin(x, best * (1 - 1e-9)));
     EXPECT_NEAR((nearest.point - x).squaredNorm(), best, 1e-12 * (1 + best));
     const auto & t = triangles[nearest.triangle];
     EXPECT_NEAR((ClosestPointOnTriangle(nearest.point, t[0], t[1], t[2]) - nearest.point).norm(), 0.0, 1e-12);

@@ -4,6 +4,7 @@
 #ifndef boneMeshImprovement_h
 #define boneMeshImprovement_h
 
+#include "boneContourShape.h"
 #include "boneSmoothingKernel.h"
 
 namespace bone
@@ -20,6 +21,11 @@ struct ImprovementParameters
   double repairAngle{ 0.35 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
   double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
+  double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go to mend cells below surfaceAngle
+  int    fitSteps{ 5 };           ///< of the fit of surfaces at the end
+  double stiffness{ 0.05 };       ///< of surfaces in that fit
+
+  const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
 };
 
 struct ImprovementReport
@@ -38,7 +44,9 @@ struct ImprovementReport
  * 2. In each round: inner points are smoothed, edges inside regions are halved and collapsed to the size that the
  *    surfaces ask for (\ref InteriorRefinement; not in the last round), the regions get their volumes back (\ref
  *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
- * 3. The regions get their volumes back once more.
+ *    Last, cells below surfaceAngle are looked after once more with a wider bound of surfaces (\ref SurfaceBound).
+ * 3. Boundary and interfaces are fitted to the shape of the contours that the mesh was made of, if they are given, else
+ *    to the first surfaces (\ref FitSurfaces), and the regions get their volumes back once more.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

@@ -17,8 +17,17 @@ namespace bone
  * Boundary and interfaces are faired by at most DistanceBound; then each round smooths inner points, adds and removes
  * points inside regions until cells grow from the surfaces inward by Gradation, swaps faces and edges, and looks after
  * the worst cells: flips of surface edges, edge collapses, and a pattern search for their points. Each of these raises
- * the smallest dihedral angle of what it touches; new triangles of boundary and interfaces stay within DistanceBound of
- * the first ones, and regions keep their volumes. A valid mesh stays valid, flat cuts flat, layers what they are.
+ * the smallest dihedral angle of what it touches. In the end boundary and interfaces are fitted to the first ones, with
+ * a resistance to bending, and regions get their volumes back. A valid mesh stays valid, flat cuts flat, layers what
+ * they are.
+ *
+ * Surfaces stay within DistanceBound of the first ones and these within DistanceBound of them, as measured at the
+ * corners, centroid and three more points of each triangle; where no change within it mends a cell with an angle below
+ * 10 degrees, within SliverFactor times that.
+ *
+ * Optional input "Contours": what the mesh was tiled from, best before slices were left out and contours resampled.
+ * Surfaces are then fitted to the contours' shape (\ref ContourShape), and between the mesh's slices come nearer to the
+ * bone than the tiling was.
  *
  * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
  * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
@@ -34,10 +43,15 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(MeshQualityFilter, MeshToMeshFilter);
 
+  void
+  SetContours(const ContourStack * contours);
+  const ContourStack *
+  GetContours() const;
+
   /** Smoothing iterations at the start; default 4. */
   itkSetMacro(Iterations, int);
   itkGetConstMacro(Iterations, int);
-  /** How far boundary and interfaces may be faired and their triangles changed, mm; default 0.3. */
+  /** How far boundary and interfaces may be from the first ones, mm; default 0.3. 0: they stay as they are. */
   itkSetMacro(DistanceBound, double);
   itkGetConstMacro(DistanceBound, double);
   /** Steps that fair the surfaces; default 10. */
@@ -55,6 +69,13 @@ public:
   /** Passes of optimisation a round; default 2. */
   itkSetMacro(OptimizationPasses, int);
   itkGetConstMacro(OptimizationPasses, int);
+  /** How many times DistanceBound surfaces may go to mend the worst cells, at least 1; default 4. */
+  itkSetMacro(SliverFactor, double);
+  itkGetConstMacro(SliverFactor, double);
+  /** Resistance of surfaces to bending where they are fitted: the larger, the smoother and the farther from the first
+   * ones or the contours; default 0.05, 0: none. Steps are stable below 0.5. */
+  itkSetMacro(Stiffness, double);
+  itkGetConstMacro(Stiffness, double);
   /** What the last run did. */
   const ImprovementReport &
   GetReport() const
@@ -80,6 +101,8 @@ private:
   double            m_TargetAngle{ 0.44 };
   double            m_Gradation{ 0.7 };
   int               m_OptimizationPasses{ 2 };
+  double            m_SliverFactor{ 4.0 };
+  double            m_Stiffness{ 0.05 };
   ImprovementReport m_Report;
 };
 

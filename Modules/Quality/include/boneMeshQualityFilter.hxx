@@ -6,8 +6,24 @@
 
 #include "boneMeshQualityFilter.h"
 
+#include <optional>
+
 namespace bone
 {
+template <typename TMesh>
+void
+MeshQualityFilter<TMesh>::SetContours(const ContourStack * contours)
+{
+  this->ProcessObject::SetInput("Contours", const_cast<ContourStack *>(contours));
+}
+
+template <typename TMesh>
+const ContourStack *
+MeshQualityFilter<TMesh>::GetContours() const
+{
+  return dynamic_cast<const ContourStack *>(this->ProcessObject::GetInput("Contours"));
+}
+
 template <typename TMesh>
 void
 MeshQualityFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
@@ -26,6 +42,14 @@ MeshQualityFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
   if (!(m_Gradation >= 0 && std::isfinite(m_Gradation)))
   {
     itkExceptionMacro("Gradation is " << m_Gradation << "; it must be finite and not negative.");
+  }
+  if (!(m_SliverFactor >= 1 && std::isfinite(m_SliverFactor)))
+  {
+    itkExceptionMacro("SliverFactor is " << m_SliverFactor << "; it must be finite and at least 1.");
+  }
+  if (!(m_Stiffness >= 0 && m_Stiffness < 0.5))
+  {
+    itkExceptionMacro("Stiffness is " << m_Stiffness << "; it must lie between 0 and 0.5, which is excluded.");
   }
   if (!(m_TargetAngle > 0 && m_TargetAngle < 1.23))
   {
@@ -46,6 +70,14 @@ MeshQualityFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction
   parameters.targetAngle = m_TargetAngle;
   parameters.gradation = m_Gradation;
   parameters.optimizationPasses = m_OptimizationPasses;
+  parameters.sliverFactor = m_SliverFactor;
+  parameters.stiffness = m_Stiffness;
+  std::optional<ContourShape> shape;
+  if (this->GetContours())
+  {
+    shape.emplace(*this->GetContours());
+    parameters.shape = &*shape;
+  }
   m_Report = ImproveMesh(complex, parameters, progress);
 }
 
@@ -61,6 +93,8 @@ MeshQualityFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
   os << indent << "TargetAngle: " << m_TargetAngle << std::endl;
   os << indent << "Gradation: " << m_Gradation << std::endl;
   os << indent << "OptimizationPasses: " << m_OptimizationPasses << std::endl;
+  os << indent << "SliverFactor: " << m_SliverFactor << std::endl;
+  os << indent << "Stiffness: " << m_Stiffness << std::endl;
 }
 } // namespace bone
 

@@ -13,15 +13,14 @@ namespace bone
 /** \class MeshRepair
  * \brief Flips of surface edges and collapses of edges at the worst cells, where these get better by it.
  *
- * Every operation raises the smallest dihedral angle of the cells it touches. New triangles of boundary and interfaces
- * stay within `distanceBound` of the surfaces of the mesh as it was given (`first`), a point that goes within it of the
- * triangles that come, and the boundary does not pass through itself; the topology of body, regions, surfaces and
- * curves is kept. */
+ * Every operation raises the smallest dihedral angle of the cells it touches. Boundary and interfaces stay within the
+ * mover's bound, and the boundary does not pass through itself; the topology of body, regions, surfaces and curves is
+ * kept. */
 class MeshRepair
 {
 public:
-  /** \param first  the surfaces as they were, not faired. */
-  MeshRepair(TetraComplex & complex, PointMover & mover, const SurfaceTarget & first, double distanceBound);
+  /** \param distanceBound  mm, of points that a curve loses; surfaces have the mover's. */
+  MeshRepair(TetraComplex & complex, PointMover & mover, double distanceBound);
 
   /** Goes once over all cells whose smallest dihedral angle has a cosine above `limit`, the worst first. `changed` is
    * called with the cells that came or changed. Returns the number of operations. */
@@ -42,14 +41,11 @@ private:
   bool
   CollapseAt(IdType t, std::vector<IdType> & changed);
   bool
-  IsNear(int surface, const std::array<Vector3, 3> & triangle) const;
-  bool
-  CollapseKeepsSurfaces(IdType v, IdType w, std::vector<TriangleIds> & removed, std::vector<TriangleIds> & added) const;
+  CollapseKeepsSurfaces(IdType v, IdType w);
 
-  TetraComplex &        m_Complex;
-  PointMover &          m_Mover;
-  const SurfaceTarget & m_First;
-  double                m_SquaredBound;
+  TetraComplex & m_Complex;
+  PointMover &   m_Mover;
+  double         m_SquaredBound;
 };
 } // namespace bone
 

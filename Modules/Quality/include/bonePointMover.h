@@ -4,8 +4,8 @@
 #ifndef bonePointMover_h
 #define bonePointMover_h
 
+#include "boneSurfaceBound.h"
 #include "boneSurfaceGrid.h"
-#include "boneTetraComplex.h"
 
 #include <vector>
 
@@ -15,25 +15,22 @@ namespace bone
  * \brief Moves single points of a valid mesh so that it stays valid.
  *
  * A move is refused where a tetrahedron at the point would not be positive (exact), where the smallest dihedral angle
- * at the point would fall both below a floor and below what it was, and where the boundary would pass through itself.
- */
+ * at the point would fall both below a floor and below what it was, where the boundary would pass through itself, and
+ * where boundary or interfaces would leave their bound, if there is one. */
 class PointMover
 {
 public:
-  explicit PointMover(TetraComplex & complex);
+  /** \param bound  of the surfaces; none: they may go anywhere. */
+  explicit PointMover(TetraComplex & complex, SurfaceBound * bound = nullptr);
 
   /** \param cosineFloor  cosine of the smallest dihedral angle wanted; 1: no floor. */
   MeshOperation
   TryMove(IdType p, const Vector3 & x, double cosineFloor);
 
-  /** Whether boundary triangles may be replaced by others without the boundary passing through itself; where they may,
-   * this counts them as replaced. Triangles are counted where their surface is tested (\ref IsTested). */
+  /** Whether surface triangles may be replaced by others without the boundary passing through itself or surfaces
+   * leaving their bound; where they may, this counts them as replaced. */
   bool
-  ReplaceBoundary(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added);
-
-  /** Whether triangles of a surface are tested against each other: those of the boundary, but for flat cuts. */
-  bool
-  IsTested(int surface) const;
+  ReplaceSurface(const std::vector<SurfaceTriangle> & removed, const std::vector<SurfaceTriangle> & added);
 
   /** Cosine of the smallest dihedral angle around p. */
   double
@@ -43,13 +40,15 @@ private:
   bool
   StarIsPositive(IdType p) const;
   void
-  CollectBoundary(IdType p);
+  CollectSurface(IdType p);
   bool
   BoundaryCrosses(IdType p) const;
 
   TetraComplex &                         m_Complex;
+  SurfaceBound *                         m_Bound;
   SurfaceGrid                            m_Grid;
-  std::vector<TriangleIds>               m_Boundary; ///< boundary triangles at the point that is moved
+  std::vector<TriangleIds>               m_Boundary;  ///< boundary triangles at the point that is moved
+  std::vector<SurfaceTriangle>           m_Triangles; ///< of all surfaces there
   std::vector<TetraComplex::SurfaceFace> m_Faces;
 };
 } // namespace bone

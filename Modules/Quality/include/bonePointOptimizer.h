@@ -45,7 +45,8 @@ private:
   PointMover &          m_Mover;
   const SurfaceTarget & m_Target;
   std::vector<Vector3>  m_Directions;
-  std::vector<char>     m_Dirty; ///< something at the point has changed since it was last looked at
+  std::vector<Vector3>  m_Better; ///< places that were found for a point, each better than the one before
+  std::vector<char>     m_Dirty;  ///< something at the point has changed since it was last looked at
 };
 } // namespace bone
 

@@ -46,9 +46,13 @@ public:
     return m_Faired[p];
   }
 
-  /** Squared distance (mm^2) of x from a surface. */
-  double
-  SquaredDistance(int surface, const Vector3 & x) const;
+  /** Whether a surface lies within a distance, given squared (mm^2), of x. */
+  bool
+  IsWithin(int surface, const Vector3 & x, double squaredDistance) const;
+
+  /** The point of a surface nearest to x. */
+  Vector3
+  Nearest(int surface, const Vector3 & x) const;
 
 private:
   std::vector<Vector3>

@@ -4,6 +4,7 @@
 #include "boneMeshImprovement.h"
 
 #include "boneInteriorRefinement.h"
+#include "boneSurfaceFit.h"
 #include "boneVolumeKeeper.h"
 
 #include <cmath>
@@ -16,6 +17,7 @@ namespace
 constexpr double LongEdge = 1.5;
 constexpr double ShortEdge = 0.6;
 constexpr int    SmoothingsInRound = 2;
+constexpr int    SliverPasses = 2;
 
 class MeshImprover
 {
@@ -24,12 +26,13 @@ public:
     : m_Complex(complex)
     , m_Parameters(parameters)
     , m_Progress(progress)
-    , m_Mover(complex)
     , m_First(complex, 0.0, 0)
+    , m_Bound(complex, m_First, parameters.distanceBound)
+    , m_Mover(complex, &m_Bound)
     , m_Target(complex, parameters.distanceBound, parameters.fairingIterations)
     , m_Volumes(complex)
     , m_Optimizer(complex, m_Mover, m_Target)
-    , m_Repair(complex, m_Mover, m_First, parameters.distanceBound)
+    , m_Repair(complex, m_Mover, parameters.distanceBound)
   {}
 
   ImprovementReport
@@ -47,7 +50,13 @@ public:
       }
       m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.surfaceAngle));
       ImproveWorst((round + 1) / steps, 1.0 / steps);
+      MendSlivers();
     }
+    SurfaceFitParameters fit;
+    fit.steps = m_Parameters.fitSteps;
+    fit.stiffness = m_Parameters.stiffness;
+    fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+    FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
     m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.repairAngle));
     return m_Report;
   }
@@ -75,10 +84,10 @@ private:
   }
 
   void
-  Flip()
+  Flip(double angle)
   {
     FlipParameters flips;
-    flips.targetAngle = m_Parameters.targetAngle;
+    flips.targetAngle = angle;
     m_Report.flips +=
       ImproveByFlips(m_Complex, flips, [this](const FlipResult & flip) { m_Optimizer.Mark(flip.created); }).done;
   }
@@ -86,42 +95,60 @@ private:
   void
   Refine()
   {
-    Flip();
+    // Of what is halved and collapsed next, no more than the worst cells is worth flips.
+    Flip(m_Parameters.surfaceAngle);
     InteriorRefinement refinement(m_Complex, m_Repair, m_Parameters.gradation);
     m_Report.splits += refinement.Split(LongEdge);
     m_Report.splits += refinement.Split(LongEdge);
-    Flip();
+    Flip(m_Parameters.surfaceAngle);
     m_Report.collapses += refinement.Collapse(ShortEdge, LongEdge, std::cos(m_Parameters.repairAngle));
     Smooth(SmoothingsInRound, SurfaceMotion::None);
   }
 
   void
-  Repair()
+  Repair(double angle)
   {
-    m_Report.repairs += m_Repair.Run(std::cos(m_Parameters.repairAngle),
-                                     [this](const std::vector<IdType> & cells) { m_Optimizer.Mark(cells); });
+    m_Report.repairs +=
+      m_Repair.Run(std::cos(angle), [this](const std::vector<IdType> & cells) { m_Optimizer.Mark(cells); });
   }
 
   void
   ImproveWorst(double done, double share)
   {
     m_Optimizer.MarkAll();
-    Flip();
-    Repair();
+    Flip(m_Parameters.targetAngle);
+    Repair(m_Parameters.repairAngle);
     for (int pass = 0; pass < m_Parameters.optimizationPasses; ++pass)
     {
       Advance(done + share * pass / m_Parameters.optimizationPasses);
       m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), std::cos(m_Parameters.surfaceAngle));
-      Flip();
-      Repair();
+      Flip(m_Parameters.targetAngle);
+      Repair(m_Parameters.repairAngle);
     }
+  }
+
+  /** What no change within the bound has mended may go farther. */
+  void
+  MendSlivers()
+  {
+    const double limit = std::cos(m_Parameters.surfaceAngle);
+    m_Bound.SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
+    m_Optimizer.MarkAll();
+    for (int pass = 0; pass < SliverPasses; ++pass)
+    {
+      Repair(m_Parameters.surfaceAngle);
+      m_Report.optimized += m_Optimizer.Run(limit, limit);
+      Flip(m_Parameters.targetAngle);
+    }
+    m_Bound.SetBound(m_Parameters.distanceBound);
   }
 
   TetraComplex &                m_Complex;
   const ImprovementParameters & m_Parameters;
   const ProgressFunction &      m_Progress;
-  PointMover                    m_Mover;
   SurfaceTarget                 m_First; ///< the surfaces as they were
+  SurfaceBound                  m_Bound;
+  PointMover                    m_Mover;
   SurfaceTarget                 m_Target;
   VolumeKeeper                  m_Volumes;
   PointOptimizer                m_Optimizer;

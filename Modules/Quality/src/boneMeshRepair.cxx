@@ -15,10 +15,9 @@ namespace
 constexpr double Gain = 1e-4;
 } // namespace
 
-MeshRepair::MeshRepair(TetraComplex & complex, PointMover & mover, const SurfaceTarget & first, double distanceBound)
+MeshRepair::MeshRepair(TetraComplex & complex, PointMover & mover, double distanceBound)
   : m_Complex(complex)
   , m_Mover(mover)
-  , m_First(first)
   , m_SquaredBound(distanceBound * distanceBound)
 {}
 
@@ -55,20 +54,9 @@ MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType>
 }
 
 bool
-MeshRepair::IsNear(int surface, const std::array<Vector3, 3> & triangle) const
-{
-  const auto & [a, b, c] = triangle;
-  return m_First.SquaredDistance(surface, (a + b + c) / 3.0) <= m_SquaredBound &&
-         m_First.SquaredDistance(surface, (a + b) / 2.0) <= m_SquaredBound &&
-         m_First.SquaredDistance(surface, (b + c) / 2.0) <= m_SquaredBound &&
-         m_First.SquaredDistance(surface, (c + a) / 2.0) <= m_SquaredBound;
-}
-
-bool
 MeshRepair::FlipSurface(IdType t, std::vector<IdType> & changed)
 {
-  const auto & p = m_Complex.Points();
-  const Id4    cell = m_Complex.Cell(t);
+  const Id4 cell = m_Complex.Cell(t);
   for (const auto & edge : TetraEdges)
   {
     const IdType a = cell[edge[0]], b = cell[edge[1]];
@@ -82,16 +70,8 @@ MeshRepair::FlipSurface(IdType t, std::vector<IdType> & changed)
       continue;
     }
     const auto [c, d] = plan.corners;
-    const Vector3 middle = (p[a] + p[b]) / 2.0;
-    const bool    covered =
-      std::min((ClosestPointOnTriangle(middle, p[a], p[c], p[d]) - middle).squaredNorm(),
-               (ClosestPointOnTriangle(middle, p[b], p[c], p[d]) - middle).squaredNorm()) <= m_SquaredBound;
-    if (!covered || !IsNear(plan.surface, { p[a], p[c], p[d] }) || !IsNear(plan.surface, { p[b], p[c], p[d] }))
-    {
-      continue;
-    }
-    if (m_Mover.IsTested(plan.surface) &&
-        !m_Mover.ReplaceBoundary({ { a, b, c }, { a, b, d } }, { { a, c, d }, { b, c, d } }))
+    const int f = plan.surface;
+    if (!m_Mover.ReplaceSurface({ { { a, b, c }, f }, { { a, b, d }, f } }, { { { a, c, d }, f }, { { b, c, d }, f } }))
     {
       continue;
     }
@@ -124,10 +104,7 @@ MeshRepair::WorstAfterCollapse(IdType v, IdType w) const
 }
 
 bool
-MeshRepair::CollapseKeepsSurfaces(IdType                     v,
-                                  IdType                     w,
-                                  std::vector<TriangleIds> & removed,
-                                  std::vector<TriangleIds> & added) const
+MeshRepair::CollapseKeepsSurfaces(IdType v, IdType w)
 {
   if (m_Complex.Dimension(v) == 3)
   {
@@ -135,48 +112,34 @@ MeshRepair::CollapseKeepsSurfaces(IdType                     v,
   }
   const auto &                           p = m_Complex.Points();
   std::vector<TetraComplex::SurfaceFace> faces;
+  std::vector<SurfaceTriangle>           removed, added;
   m_Complex.SurfaceStar(v, faces);
-  std::vector<std::pair<int, double>> nearest; // of v to the new triangles of each surface
   for (const auto & face : faces)
   {
-    const bool tested = m_Mover.IsTested(face.surface);
-    if (tested)
-    {
-      removed.push_back({ v, face.a, face.b });
-    }
-    auto at = std::find_if(nearest.begin(), nearest.end(), [&](const auto & n) { return n.first == face.surface; });
-    if (at == nearest.end())
-    {
-      at = nearest.insert(nearest.end(), { face.surface, (p[v] - p[w]).squaredNorm() });
-    }
+    removed.push_back({ { v, face.a, face.b }, face.surface });
     if (face.a == w || face.b == w)
     {
       continue;
     }
-    if (tested)
-    {
-      added.push_back({ w, face.a, face.b });
-    }
-    at->second = std::min(at->second, (ClosestPointOnTriangle(p[v], p[w], p[face.a], p[face.b]) - p[v]).squaredNorm());
+    added.push_back({ { w, face.a, face.b }, face.surface });
     // A triangle that turns by more than a right angle folds the surface.
     const Vector3 before = (p[face.a] - p[v]).cross(p[face.b] - p[v]);
     const Vector3 after = (p[face.a] - p[w]).cross(p[face.b] - p[w]);
-    if (!(before.dot(after) > 0) || !IsNear(face.surface, { p[w], p[face.a], p[face.b] }))
+    if (!(before.dot(after) > 0))
     {
       return false;
     }
-  }
-  if (std::any_of(nearest.begin(), nearest.end(), [this](const auto & n) { return n.second > m_SquaredBound; }))
-  {
-    return false;
   }
   if (m_Complex.Dimension(v) == 1)
   {
     const auto & curve = m_Complex.Surfaces().curve[v];
     const IdType x = curve[0] == w ? curve[1] : curve[0];
-    return (ClosestPointOnSegment(p[v], p[w], p[x]) - p[v]).squaredNorm() <= m_SquaredBound;
+    if (!((ClosestPointOnSegment(p[v], p[w], p[x]) - p[v]).squaredNorm() <= m_SquaredBound))
+    {
+      return false;
+    }
   }
-  return true;
+  return m_Mover.ReplaceSurface(removed, added);
 }
 
 bool
@@ -196,8 +159,7 @@ MeshRepair::TryCollapse(IdType v, IdType w, double cosine, std::vector<IdType> &
       return false;
     }
   }
-  std::vector<TriangleIds> removed, added;
-  if (!CollapseKeepsSurfaces(v, w, removed, added) || !m_Mover.ReplaceBoundary(removed, added))
+  if (!CollapseKeepsSurfaces(v, w))
   {
     return false;
   }

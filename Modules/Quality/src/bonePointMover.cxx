@@ -30,7 +30,7 @@ ForEachBoundaryTriangle(const TetraComplex & complex, TVisit visit)
   {
     for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
     {
-      if (bone::IsTested(complex, complex.FaceSurfaces(t)[i]))
+      if (IsTested(complex, complex.FaceSurfaces(t)[i]))
       {
         const Id4 & c = complex.Cell(t);
         visit(TriangleIds{ c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] });
@@ -53,8 +53,9 @@ MeanBoundaryEdge(const TetraComplex & complex)
 }
 } // namespace
 
-PointMover::PointMover(TetraComplex & complex)
+PointMover::PointMover(TetraComplex & complex, SurfaceBound * bound)
   : m_Complex(complex)
+  , m_Bound(bound)
   , m_Grid(MeanBoundaryEdge(complex))
 {
   ForEachBoundaryTriangle(complex, [&](const TriangleIds & t) { m_Grid.Insert(t, complex.Points()); });
@@ -83,43 +84,51 @@ PointMover::StarIsPositive(IdType p) const
 }
 
 bool
-PointMover::IsTested(int surface) const
+PointMover::ReplaceSurface(const std::vector<SurfaceTriangle> & removed, const std::vector<SurfaceTriangle> & added)
 {
-  return bone::IsTested(m_Complex, surface);
-}
-
-bool
-PointMover::ReplaceBoundary(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added)
-{
-  const auto & points = m_Complex.Points();
-  for (const TriangleIds & t : removed)
+  const auto &             points = m_Complex.Points();
+  std::vector<TriangleIds> goes, comes;
+  for (const auto & [from, to] : { std::make_pair(&removed, &goes), std::make_pair(&added, &comes) })
+  {
+    for (const SurfaceTriangle & triangle : *from)
+    {
+      if (IsTested(m_Complex, triangle.surface))
+      {
+        to->push_back(triangle.ids);
+      }
+    }
+  }
+  for (const TriangleIds & t : goes)
   {
     m_Grid.Erase(t, points);
   }
   bool crosses = false;
-  for (std::size_t i = 0; i < added.size() && !crosses; ++i)
+  for (std::size_t i = 0; i < comes.size() && !crosses; ++i)
   {
     for (std::size_t j = 0; j < i && !crosses; ++j)
     {
-      crosses = TrianglesCross(added[i], added[j], points);
+      crosses = TrianglesCross(comes[i], comes[j], points);
     }
-    crosses = crosses || m_Grid.Crosses(added[i], -1, points);
+    crosses = crosses || m_Grid.Crosses(comes[i], -1, points);
   }
-  for (const TriangleIds & t : crosses ? removed : added)
+  const bool refused = crosses || (m_Bound && !m_Bound->Replace(removed, added, points));
+  for (const TriangleIds & t : refused ? goes : comes)
   {
     m_Grid.Insert(t, points);
   }
-  return !crosses;
+  return !refused;
 }
 
 void
-PointMover::CollectBoundary(IdType p)
+PointMover::CollectSurface(IdType p)
 {
   m_Boundary.clear();
+  m_Triangles.clear();
   m_Complex.SurfaceStar(p, m_Faces);
   for (const auto & face : m_Faces)
   {
-    if (IsTested(face.surface))
+    m_Triangles.push_back({ { p, face.a, face.b }, face.surface });
+    if (IsTested(m_Complex, face.surface))
     {
       m_Boundary.push_back({ p, face.a, face.b });
     }
@@ -165,10 +174,14 @@ PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
   }
   else if (m_Complex.Dimension(p) < 3)
   {
-    CollectBoundary(p);
+    CollectSurface(p);
     if (BoundaryCrosses(p))
     {
       outcome = MeshOperation::Overlap;
+    }
+    else if (m_Bound && !m_Bound->Replace({}, m_Triangles, points))
+    {
+      outcome = MeshOperation::Distance;
     }
     else
     {

@@ -94,24 +94,28 @@ PointOptimizer::Improve(IdType p)
   }
   // Surface points slide: they keep what they have been moved off their target.
   const Vector3 offset = start - m_Target.Project(m_Complex, p, start);
-  const double  before = m_Mover.WorstCosine(p);
-  double        worst = before;
-  Vector3       best = start;
+  double        worst = m_Mover.WorstCosine(p);
+  m_Better.clear();
   for (int stage = 0; stage < stages; ++stage, step *= shrink)
   {
-    const Vector3 centre = best;
+    const Vector3 centre = m_Better.empty() ? start : m_Better.back();
     for (const Vector3 & direction : m_Directions)
     {
       const Vector3 x = m_Target.Project(m_Complex, p, centre + step * direction) + offset;
       const double  cosine = WorstAt(p, x, worst);
-      if (cosine < worst)
+      if (cosine < worst - gain)
       {
         worst = cosine;
-        best = x;
+        m_Better.push_back(x);
       }
     }
   }
-  if (!(worst < before - gain) || m_Mover.TryMove(p, best, -1.0) != MeshOperation::Done)
+  // The best place may be refused where one on the way to it is not.
+  while (!m_Better.empty() && m_Mover.TryMove(p, m_Better.back(), 1.0) != MeshOperation::Done)
+  {
+    m_Better.pop_back();
+  }
+  if (m_Better.empty())
   {
     return false;
   }

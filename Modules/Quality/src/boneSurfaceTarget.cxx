@@ -186,10 +186,16 @@ SurfaceTarget::BuildTrees(const TetraComplex & complex)
   }
 }
 
-double
-SurfaceTarget::SquaredDistance(int surface, const Vector3 & x) const
+bool
+SurfaceTarget::IsWithin(int surface, const Vector3 & x, double squaredDistance) const
 {
-  return m_Trees[m_TreeOfSurface[surface]].FindNearest(x).squaredDistance;
+  return m_Trees[m_TreeOfSurface[surface]].IsWithin(x, squaredDistance);
+}
+
+Vector3
+SurfaceTarget::Nearest(int surface, const Vector3 & x) const
+{
+  return m_Trees[m_TreeOfSurface[surface]].FindNearest(x).point;
 }
 
 Vector3

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 using namespace bone;
@@ -45,6 +46,38 @@ Volumes(const MeshArrays & mesh)
     volumes[mesh.region[t]] += SignedVolume(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]);
   }
   return volumes;
+}
+
+std::vector<TriangleTree::Triangle>
+Boundary(const MeshArrays & mesh)
+{
+  std::vector<TriangleTree::Triangle> triangles;
+  for (const auto & f : BoundaryFaces(mesh))
+  {
+    triangles.push_back({ { mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]] } });
+  }
+  return triangles;
+}
+
+ContourStack::SliceContainer
+CirclesOfBall(const Vector3 & centre, double radius)
+{
+  constexpr int                around = 64;
+  const double                 turn = 2.0 * std::acos(-1.0) / around;
+  ContourStack::SliceContainer slices;
+  for (double z = -std::floor(radius) + 1.0; z < radius; z += 1.0)
+  {
+    slices.emplace_back();
+    slices.back().origin = centre + Vector3(0, 0, z);
+    slices.back().contours.emplace_back();
+    const double r = std::sqrt(radius * radius - z * z);
+    for (int i = 0; i < around; ++i)
+    {
+      slices.back().contours.back().points.push_back(slices.back().origin +
+                                                     r * Vector3(std::cos(i * turn), std::sin(i * turn), 0));
+    }
+  }
+  return slices;
 }
 
 double
@@ -92,29 +125,64 @@ TEST(MeshQualityFilter, RegionsKeepTheirVolumes)
   }
 }
 
-TEST(MeshQualityFilter, NewTrianglesStayNearTheFirst)
+TEST(MeshQualityFilter, SurfacesStayWithinTheBoundBothWays)
 {
-  auto       filter = MeshQualityFilter<MeshType>::New();
-  const auto mesh = Body(1);
+  constexpr double bound = 0.1;
+  auto             filter = MeshQualityFilter<MeshType>::New();
+  const auto       mesh = Body(1);
   filter->SetInput(AsMesh(mesh));
-  filter->SetDistanceBound(0.1);
+  filter->SetDistanceBound(bound);
+  filter->SetSliverFactor(1.0);
   filter->Update();
-  std::vector<TriangleTree::Triangle> triangles;
-  for (const auto & f : BoundaryFaces(mesh))
+  const auto         first = Boundary(mesh), made = Boundary(filter->GetOutput()->GetArrays());
+  const TriangleTree firstTree(first), madeTree(made);
+  const auto         farthest = [](const auto & from, const TriangleTree & to, bool corners) {
+    double squared = 0.0;
+    for (const auto & t : from)
+    {
+      const Vector3 sum = t[0] + t[1] + t[2];
+      squared = std::max(squared, to.FindNearest(sum / 3.0).squaredDistance);
+      for (const Vector3 & x : t)
+      {
+        squared = std::max(squared, to.FindNearest(corners ? x : Vector3((sum + 3.0 * x) / 6.0)).squaredDistance);
+      }
+    }
+    return std::sqrt(squared);
+  };
+  EXPECT_LE(farthest(first, madeTree, true), bound * (1 + 1e-9));
+  EXPECT_LE(farthest(first, madeTree, false), bound * (1 + 1e-9));
+  EXPECT_LE(farthest(made, firstTree, true), 1.5 * bound);
+}
+
+TEST(MeshQualityFilter, SurfacesAreFittedToContours)
+{
+  // A ball, and the contours of one beside it.
+  constexpr double shift = 0.15, radius = 12.0;
+  const auto       mesh = test::MakeBall(4, { 1, 1, 2 }, radius, 0.1, 2);
+  auto             stack = ContourStack::New();
+  stack->SetSlices(CirclesOfBall({ shift, 0, 0 }, radius));
+  const auto centre = [](const MeshArrays & arrays) {
+    Vector3 sum = Vector3::Zero();
+    double  area = 0.0;
+    for (const auto & t : Boundary(arrays))
+    {
+      const double weight = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+      sum += weight * (t[0] + t[1] + t[2]) / 3.0;
+      area += weight;
+    }
+    return Vector3(sum / area);
+  };
+  for (const bool with : { false, true })
   {
-    triangles.push_back({ { mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]] } });
+    auto filter = MeshQualityFilter<MeshType>::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetContours(with ? stack.GetPointer() : nullptr);
+    filter->SetRounds(1);
+    filter->Update();
+    const auto made = filter->GetOutput()->GetArrays();
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+    EXPECT_NEAR((centre(made) - centre(mesh)).x(), with ? shift : 0.0, 0.05);
   }
-  const TriangleTree tree(triangles);
-  const auto         made = filter->GetOutput()->GetArrays();
-  double             sum = 0.0;
-  std::size_t        count = 0;
-  for (const auto & f : BoundaryFaces(made))
-  {
-    sum +=
-      std::sqrt(tree.FindNearest((made.points[f[0]] + made.points[f[1]] + made.points[f[2]]) / 3.0).squaredDistance);
-    ++count;
-  }
-  EXPECT_LT(sum / static_cast<double>(count), 0.1);
 }
 
 TEST(MeshQualityFilter, LongCellsInsideARegionAreHalvedUnlessNotWanted)
@@ -169,6 +237,8 @@ TEST(MeshQualityFilter, RefusesBadParameters)
   refuses([](auto * f) { f->SetTargetAngle(0.0); });
   refuses([](auto * f) { f->SetDistanceBound(-1.0); });
   refuses([](auto * f) { f->SetGradation(-0.1); });
+  refuses([](auto * f) { f->SetSliverFactor(0.9); });
+  refuses([](auto * f) { f->SetStiffness(0.5); });
   refuses([](auto * f) { f->SetInput(nullptr); });
 }
 

@@ -1,0 +1,90 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneContourShape.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace bone;
+
+namespace
+{
+constexpr int Around = 256;
+
+Contour
+Circle(const Vector3 & centre, double radius, int region, bool clockwise = false)
+{
+  Contour contour;
+  contour.region = region;
+  for (int i = 0; i < Around; ++i)
+  {
+    const double angle = 2.0 * std::acos(-1.0) * i / Around;
+    contour.points.push_back(centre + radius * Vector3(std::cos(angle), std::sin(angle), 0));
+  }
+  if (clockwise)
+  {
+    std::reverse(contour.points.begin(), contour.points.end());
+  }
+  return contour;
+}
+
+/** A cone of two layers with a hole through the inner one; radii 10 + z / 2 and 6, hole 2. */
+ContourShape
+Cone()
+{
+  ContourStack::SliceContainer slices;
+  for (double z : { 0.0, 2.0, 6.0 })
+  {
+    ContourSlice slice;
+    slice.origin = Vector3(0, 0, z);
+    slice.contours = { Circle(slice.origin, 10 + 0.5 * z, Region::Cortical),
+                       Circle(slice.origin, 6, Region::Spongy),
+                       Circle(slice.origin, 2, Region::Outside, true) };
+    slices.push_back(slice);
+  }
+  auto stack = ContourStack::New();
+  stack->SetSlices(slices);
+  return ContourShape(*stack);
+}
+} // namespace
+
+TEST(ContourShape, IsTheDistanceOnSlicesAndLinearBetween)
+{
+  const ContourShape shape = Cone();
+  for (double z : { 0.0, 1.0, 2.0, 3.7, 6.0 })
+  {
+    for (double r : { 8.0, 10.2, 12.5, 14.0 })
+    {
+      const auto value = shape.Evaluate(1, { 0.6 * r, 0.8 * r, z });
+      ASSERT_TRUE(value) << z;
+      EXPECT_NEAR(value->distance, r - (10 + 0.5 * z), 2e-3);
+      EXPECT_NEAR((value->gradient - Vector3(0.6, 0.8, -0.5)).norm(), 0.0, 0.03);
+    }
+  }
+}
+
+TEST(ContourShape, LevelsHaveWhatLiesWithinAndHolesAreOutsideOfAll)
+{
+  const ContourShape shape = Cone();
+  EXPECT_NEAR(shape.Evaluate(2, { 5.0, 0, 1 })->distance, -1.0, 2e-3);
+  EXPECT_NEAR(shape.Evaluate(2, { 7.0, 0, 1 })->distance, 1.0, 2e-3);
+  for (int level : { 1, 2 })
+  {
+    EXPECT_NEAR(shape.Evaluate(level, { 1.5, 0, 1 })->distance, 0.5, 2e-3);
+    EXPECT_NEAR(shape.Evaluate(level, { 2.5, 0, 1 })->distance, -0.5, 2e-3);
+    EXPECT_LT(shape.Evaluate(level, { 2.5, 0, 1 })->gradient.x(), 0.0);
+  }
+}
+
+TEST(ContourShape, IsUnknownBeyondTheSlicesAndWithoutTheLevel)
+{
+  const ContourShape shape = Cone();
+  EXPECT_FALSE(shape.Evaluate(1, { 0, 0, -0.1 }));
+  EXPECT_FALSE(shape.Evaluate(1, { 0, 0, 6.1 }));
+  EXPECT_FALSE(shape.Evaluate(3, { 0, 0, 1 }));
+  EXPECT_FALSE(shape.Evaluate(0, { 0, 0, 1 }));
+  EXPECT_FALSE(ContourShape(*ContourStack::New()).Evaluate(1, { 0, 0, 0 }));
+}

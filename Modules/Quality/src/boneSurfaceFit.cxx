@@ -1,0 +1,159 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSurfaceFit.h"
+
+#include <cmath>
+#include <optional>
+
+namespace bone
+{
+namespace
+{
+/** Moves shorter than this share of the mean surface edge are not made. */
+constexpr double ShortestMove = 2e-3;
+
+struct Residuals
+{
+  std::vector<Vector3> normal; ///< #p, area-weighted
+  std::vector<double>  shift;  ///< #p, sum of weighted distances
+  std::vector<double>  weight; ///< #p
+  double               shortest{ 0.0 };
+};
+
+/** Barycentric coordinates of the samples of a triangle: exact for quadratic distances. */
+constexpr double Samples[3][3] = { { 2. / 3, 1. / 6, 1. / 6 }, { 1. / 6, 2. / 3, 1. / 6 }, { 1. / 6, 1. / 6, 2. / 3 } };
+
+/** Distance from x along a unit normal, outward from the level, to the shape; none where the shape is far or its
+ * surface lies across the normal: contours that the mesh has left out. */
+std::optional<double>
+ToShape(const ContourShape & shape, int level, const Vector3 & x, const Vector3 & normal)
+{
+  constexpr double farthest = 1.5, leastSlope = 0.3;
+  const auto       value = shape.Evaluate(level, x);
+  const double     slope = value ? value->gradient.dot(normal) : 0.0;
+  if (!(slope > leastSlope) || std::abs(value->distance) > farthest * slope)
+  {
+    return std::nullopt;
+  }
+  return -value->distance / slope;
+}
+
+Residuals
+Measure(const TetraComplex & complex, const SurfaceTarget & target, const ContourShape * shape)
+{
+  const auto & x = complex.Points();
+  Residuals    r;
+  r.normal.assign(x.size(), Vector3::Zero());
+  r.shift.assign(x.size(), 0.0);
+  r.weight.assign(x.size(), 0.0);
+  double      edges = 0.0;
+  std::size_t count = 0;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
+      if (surface < 0 || complex.Surfaces().surfaces[surface].flat >= 0)
+      {
+        continue;
+      }
+      const Id4 &   c = complex.Cell(t);
+      const IdType  f[3] = { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] };
+      const Vector3 normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
+      const double  area = normal.norm();
+      if (!(area > 0))
+      {
+        continue;
+      }
+      // Faces look outward from the cell that carries them, that of the smaller region: into the level at interfaces.
+      const bool    boundary = complex.Surfaces().surfaces[surface].IsBoundary();
+      const double  sign = boundary ? 1.0 : -1.0;
+      const int     level = boundary ? 1 : complex.Surfaces().surfaces[surface].inner;
+      const Vector3 outward = normal * (sign / area);
+      edges += (x[f[1]] - x[f[0]]).norm();
+      ++count;
+      for (const auto & sample : Samples)
+      {
+        const Vector3 place = sample[0] * x[f[0]] + sample[1] * x[f[1]] + sample[2] * x[f[2]];
+        const auto    toShape = shape ? ToShape(*shape, level, place, outward) : std::nullopt;
+        const double distance = toShape ? *toShape * sign : (target.Nearest(surface, place) - place).dot(normal) / area;
+        for (int k = 0; k < 3; ++k)
+        {
+          r.shift[f[k]] += sample[k] * area * distance;
+          r.weight[f[k]] += sample[k] * area;
+        }
+      }
+      for (IdType p : f)
+      {
+        r.normal[p] += normal;
+      }
+    }
+  }
+  r.shortest = count > 0 ? ShortestMove * edges / static_cast<double>(count) : 0.0;
+  return r;
+}
+
+/** Mean of the neighbours along the surface less the value, of all surface points; zero on flat cuts. */
+std::vector<Vector3>
+Umbrella(const TetraComplex & complex, const std::vector<Vector3> & values)
+{
+  std::vector<Vector3> result(values.size(), Vector3::Zero());
+  std::vector<int>     count(values.size(), 0);
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
+      for (int k = 0; k < 3 && surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0; ++k)
+      {
+        // Each edge of a closed surface is met once in either direction.
+        const IdType p = complex.Cell(t)[TetraFaces[i][k]], q = complex.Cell(t)[TetraFaces[i][(k + 1) % 3]];
+        result[p] += values[q];
+        ++count[p];
+      }
+    }
+  }
+  for (std::size_t p = 0; p < values.size(); ++p)
+  {
+    result[p] = count[p] > 0 ? Vector3(result[p] / count[p] - values[p]) : Vector3::Zero();
+  }
+  return result;
+}
+} // namespace
+
+std::size_t
+FitSurfaces(TetraComplex &               complex,
+            PointMover &                 mover,
+            const SurfaceTarget &        first,
+            const ContourShape *         shape,
+            const SurfaceFitParameters & parameters)
+{
+  constexpr int halvings = 3;
+  std::size_t   moves = 0;
+  for (int step = 0; step < parameters.steps; ++step)
+  {
+    const Residuals            r = Measure(complex, first, shape);
+    const std::vector<Vector3> bending = Umbrella(complex, Umbrella(complex, complex.Points()));
+    for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
+    {
+      const double length = r.normal[p].norm();
+      if (complex.Dimension(p) != 2 || !(length > 0 && r.weight[p] > 0))
+      {
+        continue;
+      }
+      const Vector3 normal = r.normal[p] / length;
+      double        shift = r.shift[p] / r.weight[p] - parameters.stiffness * bending[p].dot(normal);
+      for (int half = 0; half < halvings && std::abs(shift) > r.shortest; ++half, shift /= 2.0)
+      {
+        if (mover.TryMove(p, complex.Points()[p] + shift * normal, parameters.cosineFloor) == MeshOperation::Done)
+        {
+          ++moves;
+          break;
+        }
+      }
+    }
+  }
+  return moves;
+}
+} // namespace bone
