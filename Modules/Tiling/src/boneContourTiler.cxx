@@ -4,13 +4,11 @@
 #include "boneContourTiler.h"
 
 #include "boneMeshValidator.h"
+#include "boneOwnFrame.h"
 #include "boneSectionBuilder.h"
 #include "boneSectionJoin.h"
 #include "boneSlabFilling.h"
 #include "boneSlabTiler.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -29,10 +27,7 @@ namespace
 {
 using namespace tiling;
 
-constexpr double Pi = 3.14159265358979323846;
-constexpr double AngleUnit = 1e-8;
-constexpr double PlaceTolerance = 1e-6; // mm, within which coordinates are the same
-constexpr double LeastCapHeight = 0.2;  // of the slab
+constexpr double LeastCapHeight = 0.2; // of the slab
 constexpr double MostCapHeight = 0.9;
 constexpr double FilledEndFactor = 1.5; // of its height; the outermost copy of the overlay lies at 2/3 or less
 
@@ -74,88 +69,6 @@ PointsAroundVoids(const MeshArrays & mesh)
     }
   }
   return around;
-}
-
-/** In-plane axis of the contours themselves, so that a turned stack is tiled as it was: the direction of their largest
- * extent, toward the longer tail; the stack's own where they have none. */
-Vector3
-OwnAxis(const ContourStack & stack)
-{
-  constexpr double     leastDifference = 1e-3;
-  std::vector<Vector2> points;
-  for (const ContourSlice & slice : stack.GetSlices())
-  {
-    for (const Contour & contour : slice.contours)
-    {
-      for (std::size_t i = 0; i < contour.points.size() && !contour.axis; ++i)
-      {
-        points.push_back(stack.ToPlane(contour.points[i]));
-      }
-    }
-  }
-  Vector2 mean = Vector2::Zero();
-  for (const Vector2 & q : points)
-  {
-    mean += q / static_cast<double>(points.size());
-  }
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const Vector2 & q : points)
-  {
-    spread += (q - mean) * (q - mean).transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  const Vector2                                        values = axes.eigenvalues();
-  if (!(values[1] - values[0] > leastDifference * values[1]))
-  {
-    return stack.GetU();
-  }
-  const Vector2 axis = axes.eigenvectors().col(1);
-  double        tail = 0.0;
-  for (const Vector2 & q : points)
-  {
-    tail += std::pow((q - mean).dot(axis), 3.0);
-  }
-  // Rounded, so that sums in another order give the same axis to the last bit.
-  const double angle = AngleUnit * std::floor(std::atan2(axis.y(), axis.x()) / AngleUnit + 0.5) + (tail < 0 ? Pi : 0.0);
-  return stack.FromPlane({ std::cos(angle), std::sin(angle) }, 0.0);
-}
-
-/** The same contours in an order and with first points that depend on where they lie alone, in their own frame: turning
- * or renumbering a stack then changes nothing but the numbering, and what rounding does. */
-ContourStack::Pointer
-InOwnOrder(const ContourStack & stack)
-{
-  auto own = ContourStack::New();
-  own->Graft(&stack);
-  const Vector3 axis = OwnAxis(stack);
-  own->SetFrame(axis, stack.GetNormal().cross(axis));
-  const auto before = [&own](const Vector3 & p, const Vector3 & q) {
-    const Vector2 a = own->ToPlane(p), b = own->ToPlane(q);
-    return std::abs(a.x() - b.x()) > PlaceTolerance ? a.x() < b.x() : a.y() < b.y() - PlaceTolerance;
-  };
-  ContourStack::SliceContainer slices = own->GetSlices();
-  for (ContourSlice & slice : slices)
-  {
-    for (Contour & contour : slice.contours)
-    {
-      auto & points = contour.points;
-      if (!contour.axis)
-      {
-        std::rotate(points.begin(), std::min_element(points.begin(), points.end(), before), points.end());
-      }
-      else if (before(points.back(), points.front()))
-      {
-        std::reverse(points.begin(), points.end());
-        std::reverse(contour.clearance.begin(), contour.clearance.end());
-      }
-    }
-    std::stable_sort(slice.contours.begin(), slice.contours.end(), [&before](const Contour & a, const Contour & b) {
-      // Branches of a medial axis begin where others do.
-      return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), before);
-    });
-  }
-  own->SetSlices(std::move(slices));
-  return own;
 }
 
 /** Tiles all slabs of a stack in order. The holes in `closed` are left out; those around voids are added to it. */
@@ -216,15 +129,6 @@ private:
   CollectSlice(int k)
   {
     m_Pieces.push_back(CollectPieces(m_Stack, k, m_Closed[k], m_Report));
-    m_Given.emplace_back();
-    for (const Contour & contour : m_Stack.GetSlices()[k].contours)
-    {
-      for (const Vector3 & p : contour.points)
-      {
-        const Vector2 q = m_Stack.ToPlane(p);
-        m_Given.back().emplace(std::array<double, 2>{ { q.x(), q.y() } }, p);
-      }
-    }
   }
 
   void
@@ -282,18 +186,7 @@ private:
   Section
   Build(int k, std::size_t i, const PlanarTree & carried, double tolerance, TilingReport & report)
   {
-    const std::size_t mark = m_Pool.plane.size();
-    Section           section =
-      BuildSection(m_Stack, m_Pieces[k][i], carried, tolerance, k, m_Stack.GetHeight(k), m_Pool, report);
-    for (std::size_t v = mark; v < m_Pool.plane.size(); ++v)
-    {
-      const auto given = m_Given[k].find({ m_Pool.plane[v].x(), m_Pool.plane[v].y() });
-      if (given != m_Given[k].end())
-      {
-        m_Pool.space[v] = given->second;
-      }
-    }
-    return section;
+    return BuildSection(m_Stack, m_Pieces[k][i], carried, tolerance, k, m_Stack.GetHeight(k), m_Pool, report);
   }
 
   /** The medial axis of some sections of a slice, joined by bridges; empty where there is none. */
@@ -622,31 +515,82 @@ private:
       return std::nullopt;
     }
     RemoveUnusedPoints(mesh);
-    Progress(0.95);
-    const MeshValidation validation = ValidateMesh(mesh);
-    if (!validation.IsValid())
-    {
-      throw std::runtime_error("the contours cannot be tiled into a valid mesh: " + validation.Summary());
-    }
     Progress(1.0);
     return mesh;
   }
 
-  const ContourStack &                   m_Stack;
-  const TilingParameters &               m_Parameters;
-  ClosedHoles &                          m_Closed;
-  TilingReport &                         m_Report;
-  VertexPool                             m_Pool;
-  std::vector<TiledTetra>                m_Tetrahedra;
-  SlabTiler                              m_Slabs;
-  std::vector<std::vector<Section>>      m_Sections;
-  std::vector<std::vector<PieceOutline>> m_Pieces;
-  /** The contours' points in space by their coordinates in the plane, lest rounding moves them. */
-  std::vector<std::map<std::array<double, 2>, Vector3>> m_Given;
-  std::vector<PlanarTree>                               m_Carried;  ///< axes from below for the slice built last
-  std::vector<std::vector<Group>>                       m_Groups;   ///< of slice k and k + 1
-  std::vector<std::function<SlabFilling()>>             m_Fillings; ///< put off until all slices are there
+  const ContourStack &                      m_Stack;
+  const TilingParameters &                  m_Parameters;
+  ClosedHoles &                             m_Closed;
+  TilingReport &                            m_Report;
+  VertexPool                                m_Pool;
+  std::vector<TiledTetra>                   m_Tetrahedra;
+  SlabTiler                                 m_Slabs;
+  std::vector<std::vector<Section>>         m_Sections;
+  std::vector<std::vector<PieceOutline>>    m_Pieces;
+  std::vector<PlanarTree>                   m_Carried;  ///< axes from below for the slice built last
+  std::vector<std::vector<Group>>           m_Groups;   ///< of slice k and k + 1
+  std::vector<std::function<SlabFilling()>> m_Fillings; ///< put off until all slices are there
 };
+/** A metric of places in space, for steps in a frame. */
+class MetricInSpace : public TilingMetric
+{
+public:
+  MetricInSpace(const TilingMetric & metric, const OwnFrame & frame)
+    : m_Metric(metric)
+    , m_Frame(frame)
+  {}
+
+  double
+  Evaluate(const TilingStep & step) const override
+  {
+    TilingStep placed = step;
+    for (int i = 0; i < 2 * step.numberOfEdges; ++i)
+    {
+      placed.edges[i] = m_Frame.ToSpace(step.edges[i]);
+    }
+    for (int i = 0; i < 3 * step.numberOfFaces; ++i)
+    {
+      placed.faces[i] = m_Frame.ToSpace(step.faces[i]);
+    }
+    return m_Metric.Evaluate(placed);
+  }
+
+private:
+  const TilingMetric & m_Metric;
+  const OwnFrame &     m_Frame;
+};
+
+MeshArrays
+TileInFrame(const OwnFrame & frame, const TilingParameters & parameters, TilingReport & report)
+{
+  const SpanLengthMetric              span;
+  std::unique_ptr<const TilingMetric> given;
+  if (parameters.metric)
+  {
+    given = std::make_unique<MetricInSpace>(*parameters.metric, frame);
+  }
+  const ContourStack & stack = frame.GetStack();
+  ClosedHoles          holes(stack.GetSlices().size());
+  for (;;)
+  {
+    report = TilingReport();
+    StackTiler tiler(stack, given ? *given : span, parameters, holes, report);
+    if (auto mesh = tiler.Run())
+    {
+      for (Vector3 & p : mesh->points)
+      {
+        p = frame.ToSpace(p);
+      }
+      const MeshValidation validation = ValidateMesh(*mesh);
+      if (!validation.IsValid())
+      {
+        throw std::runtime_error("the contours cannot be tiled into a valid mesh: " + validation.Summary());
+      }
+      return std::move(*mesh);
+    }
+  }
+}
 } // namespace
 
 MeshArrays
@@ -665,17 +609,15 @@ TileContours(const ContourStack & stack, const TilingParameters & parameters, Ti
     throw std::runtime_error("the stack has contours on " + std::to_string(slices) +
                              " slice(s); a mesh needs at least two slices with closed contours");
   }
-  const ContourStack::Pointer own = InOwnOrder(stack);
-  const SpanLengthMetric      span;
-  ClosedHoles                 holes(stack.GetSlices().size());
-  for (;;)
+  // With rounded coordinates in its own frame a stack is tiled alike however it lies. Where rounding does harm (cells
+  // that are flat in space, contours that nearly touch), the coordinates in space are taken.
+  try
   {
-    report = TilingReport();
-    StackTiler tiler(*own, parameters.metric ? *parameters.metric : span, parameters, holes, report);
-    if (auto mesh = tiler.Run())
-    {
-      return std::move(*mesh);
-    }
+    return TileInFrame(OwnFrame(stack, true), parameters, report);
+  }
+  catch (const std::runtime_error &)
+  {
+    return TileInFrame(OwnFrame(stack, false), parameters, report);
   }
 }
 } // namespace bone

@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -27,7 +28,10 @@ constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
 constexpr double ShiftGain = 1.5;         ///< a shift leans upright walls too, so it must pay
 constexpr int    UsualShifts = 2;         ///< looked at always; others where these do not do
+constexpr double LeastVolume = 1e-11;     ///< mm^3, of a cell that is not thin
 constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
+constexpr double NearPoints = 0.1;        // mm
+constexpr double PartPoints = 0.4;        // mm
 constexpr double Shift = 1e-5;            // mm, parts vertices of the two slices that lie over each other
 
 /** The triangulation of a slice and of what is outside the bone. */
@@ -150,12 +154,54 @@ MakeSide(const VertexPool &           pool,
   return side;
 }
 
+/** Whether a vertex lies inside one region and may be moved a little without turning a triangle over. */
+bool
+IsInner(const Side & side, int vertex)
+{
+  int region = 0;
+  for (std::size_t t = 0; t < side.box.triangles.size(); ++t)
+  {
+    const auto & ids = side.box.triangles[t];
+    const auto   at = std::find(ids.begin(), ids.end(), vertex);
+    if (at != ids.end())
+    {
+      if (side.region[t] == 0 || (region != 0 && side.region[t] != region))
+      {
+        return false;
+      }
+      region = side.region[t];
+      const auto      i = static_cast<std::size_t>(at - ids.begin());
+      const Vector2 & a = side.box.points[ids[(i + 1) % 3]];
+      const Vector2 & b = side.box.points[ids[(i + 2) % 3]];
+      const Vector2   x = side.box.points[vertex] - a, d = b - a;
+      if ((d.x() * x.y() - d.y() * x.x()) < 4 * PartPoints * d.norm())
+      {
+        return false;
+      }
+    }
+  }
+  return region != 0;
+}
+
 PlanarOverlay
 OverlaySides(const Side & lower, const Side & upper)
 {
+  // Medial axes of both slices often meet in nearly the same point, whose fans of triangles would cross each other in a
+  // knot of that size.
+  BoxTriangulation parted = upper.box;
+  for (std::size_t v = Corners; v < parted.points.size(); ++v)
+  {
+    const bool near = std::any_of(lower.box.points.begin() + Corners, lower.box.points.end(), [&](const Vector2 & q) {
+      return (q - upper.box.points[v]).squaredNorm() < NearPoints * NearPoints;
+    });
+    if (near && IsInner(upper, static_cast<int>(v)))
+    {
+      parted.points[v] += PartPoints * Vector2(0.8, 0.6);
+    }
+  }
   for (int attempt = 1;; ++attempt)
   {
-    BoxTriangulation moved = upper.box;
+    BoxTriangulation moved = parted;
     for (std::size_t v = Corners; v < moved.points.size(); ++v)
     {
       // No two vertices by the same amount, lest edges of both slices stay collinear.
@@ -283,8 +329,9 @@ public:
     return parted;
   }
 
+  /** `thin`: whether a cell is so flat that it may be inverted in another frame. */
   SlabFilling
-  Run(double low, double high)
+  Run(double low, double high, bool & thin)
   {
     MakeColumns();
     MakePoints(low, high);
@@ -298,7 +345,14 @@ public:
         throw std::runtime_error("its contours are too close to be told apart");
       }
     }
-    return BoneOf(CollapseSteinerPoints(m_Mesh, m_FirstSteiner, PlacesOf(low, high)));
+    const MeshArrays mesh = CollapseSteinerPoints(m_Mesh, m_FirstSteiner, PlacesOf(low, high));
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    {
+      const Id4 &  c = mesh.tetrahedra[t];
+      const auto & p = mesh.points;
+      thin = thin || (mesh.region[t] > 0 && !(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > LeastVolume));
+    }
+    return BoneOf(mesh);
   }
 
 private:
@@ -699,19 +753,32 @@ FillSlab(const ContourStack &         stack,
          double                       upperHeight,
          const VertexPool &           pool)
 {
-  std::string reason;
+  std::string                reason;
+  std::optional<SlabFilling> usable;
   for (const auto & alignment : FindAlignments(stack, lower, upper, groups, pool, reason))
   {
     try
     {
-      SlabFilling filling = alignment->filler->Run(lowerHeight, upperHeight);
+      bool        thin = false;
+      SlabFilling filling = alignment->filler->Run(lowerHeight, upperHeight, thin);
       filling.parted = alignment->parted;
-      return filling;
+      if (!thin)
+      {
+        return filling;
+      }
+      if (!usable)
+      {
+        usable = std::move(filling);
+      }
     }
     catch (const std::runtime_error & error)
     {
       reason = error.what();
     }
+  }
+  if (usable)
+  {
+    return *usable;
   }
   throw std::runtime_error("slice " + std::to_string((lower.empty() ? upper : lower).front().slice) +
                            ": the space next to it cannot be filled, " + reason + "; use a smaller slice step");

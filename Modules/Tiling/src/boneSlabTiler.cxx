@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 namespace bone
@@ -19,7 +20,74 @@ namespace tiling
 {
 namespace
 {
-constexpr int KnitBudget = 60; // ring knits tried before another way is taken
+constexpr int    KnitBudget = 60; // ring knits tried before another way is taken
+constexpr double SkewLimit = 1.5; // of the slab's height and the steps of the walks
+
+/** The longer of the two steps of a walk at each of its vertices, in the plane. */
+std::map<int, double>
+StepsAt(const std::vector<Vector2> & plane, const Walk & walk)
+{
+  std::map<int, double> steps;
+  for (std::size_t i = 0; i < walk.size(); ++i)
+  {
+    const int    a = walk[i], b = walk[(i + 1) % walk.size()];
+    const double step = (plane[b] - plane[a]).norm();
+    for (int v : { a, b })
+    {
+      steps[v] = std::max(steps[v], step);
+    }
+  }
+  return steps;
+}
+
+double
+DistanceToWalk(const std::vector<Vector2> & plane, int v, const Walk & walk)
+{
+  double best = std::numeric_limits<double>::infinity();
+  for (int w : walk)
+  {
+    best = std::min(best, (plane[w] - plane[v]).norm());
+  }
+  return best;
+}
+
+/** True where an edge of a wall joins vertices of two walks that are much farther from each other than from the other's
+ * walk: such a wall is twisted and cuts across the bone. */
+bool
+WallIsSkew(const VertexPool &              pool,
+           const std::vector<TiledTetra> & tetrahedra,
+           std::size_t                     begin,
+           const Walk &                    lower,
+           const Walk &                    upper,
+           double                          height)
+{
+  const auto below = StepsAt(pool.plane, lower), above = StepsAt(pool.plane, upper);
+  for (std::size_t t = begin; t < tetrahedra.size(); ++t)
+  {
+    for (const auto & edge : TetraEdges)
+    {
+      int  a = static_cast<int>(tetrahedra[t].vertices[edge[0]]), b = static_cast<int>(tetrahedra[t].vertices[edge[1]]);
+      auto foot = below.find(a), head = above.find(b);
+      if (foot == below.end() || head == above.end())
+      {
+        std::swap(a, b);
+        foot = below.find(a);
+        head = above.find(b);
+      }
+      if (foot == below.end() || head == above.end())
+      {
+        continue;
+      }
+      const double excess =
+        (pool.plane[a] - pool.plane[b]).norm() - SkewLimit * (height + std::max(foot->second, head->second));
+      if (excess > 0 && excess > std::max(DistanceToWalk(pool.plane, a, upper), DistanceToWalk(pool.plane, b, lower)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 } // namespace
 
 bool
@@ -53,6 +121,20 @@ SlabTiler::KnitFrom(const Section &          lower,
 }
 
 bool
+SlabTiler::WallsSkew(const Section & lower, const Section & upper, std::size_t begin, double height) const
+{
+  const std::size_t walls = lower.rings.size() + (lower.hole && upper.hole ? 1 : 0);
+  for (std::size_t k = 0; k < walls; ++k)
+  {
+    if (WallIsSkew(m_Pool, m_Tetrahedra, begin, lower.walks[k], upper.walks[k], height))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool
 SlabTiler::TryKnit(const Section & lower, const Section & upper, const std::vector<int> & regions)
 {
   Merge inner;
@@ -63,12 +145,9 @@ SlabTiler::TryKnit(const Section & lower, const Section & upper, const std::vect
     const auto mark = m_Tetrahedra.size();
     if (KnitFrom(lower, upper, rings - 1, inner, regions, budget))
     {
-      if (!WallsCross(m_Pool,
-                      m_Stack,
-                      m_Tetrahedra,
-                      mark,
-                      m_Pool.space[lower.walks[0][0]].dot(m_Stack.GetNormal()),
-                      m_Pool.space[upper.walks[0][0]].dot(m_Stack.GetNormal())))
+      const double low = m_Pool.space[lower.walks[0][0]].dot(m_Stack.GetNormal()),
+                   high = m_Pool.space[upper.walks[0][0]].dot(m_Stack.GetNormal());
+      if (!WallsSkew(lower, upper, mark, high - low) && !WallsCross(m_Pool, m_Stack, m_Tetrahedra, mark, low, high))
       {
         m_Report.alternativeKnits += variant > 0 || budget < KnitBudget - rings;
         return true;

@@ -41,6 +41,9 @@ public:
   TryCap(const Section & section, double height, bool above);
 
 private:
+  /** Whether a wall of the tetrahedra from `begin` is twisted against the contours it joins. */
+  bool
+  WallsSkew(const Section & lower, const Section & upper, std::size_t begin, double height) const;
   bool
   TryKnit(const Section & lower, const Section & upper, const std::vector<int> & regions);
   bool

@@ -265,6 +265,29 @@ TEST(ContourTilingMeshSource, DanglingEndsWithinReachAreJoined)
   EXPECT_EQ(validation.boundaryEuler, 0);
 }
 
+TEST(ContourTilingMeshSource, FansAboutNearlyTheSamePointLeaveNoKnot)
+{
+  // A round column whose slices' axes are points a hundredth of a millimetre apart, in a slab that is filled because of
+  // the two pieces against two beside it.
+  const std::vector<Loop> below = { { { -12, 0 }, 7, 6, 0, 1 }, { { 3, 0 }, 6, 6, 0, 1 }, { { 0, 30 }, 12, 12, 0, 1 } };
+  const std::vector<Loop> above = { { { -17, 0 }, 6, 6, 0, 1 },
+                                    { { -2, 0 }, 8, 6, 0, 1 },
+                                    { { 0.01, 30 }, 12, 12, 0, 1 } };
+  std::vector<std::vector<Loop>> slices(2, below);
+  slices.insert(slices.end(), 2, above);
+  const MeshArrays mesh = Tile(MakeStack(slices, 2.0));
+  EXPECT_TRUE(bone::ValidateMesh(mesh).IsValid());
+  int close = 0;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    for (std::size_t j = 0; j < i; ++j)
+    {
+      close += (mesh.points[i] - mesh.points[j]).norm() < 0.05;
+    }
+  }
+  EXPECT_LE(close, 2);
+}
+
 TEST(ContourTilingMeshSource, ASocketEndsInADome)
 {
   // Solid below, a hole above: its floor is neither on the lower slice nor on the upper one.
