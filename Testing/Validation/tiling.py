@@ -35,6 +35,7 @@ Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled witho
   below. Parted: groups of pieces that belong together by distance but were not joined.
 - Against the label: Dice overlap, mean distance (mm) from the mesh's surface to the label's and back, at one spacing of
   each real bone. Seconds are of one core.
+- Valid: by {checker}.
 """
 
 
@@ -153,7 +154,8 @@ def main():
     options = parser.parse_args()
     validation = Validation(options.build, options.check)
     chosen = [c for c in cases(os.environ.get("BONETK_DATA")) if options.only in c[0]][::options.sample]
-    out = [INTRODUCTION, "| bone, slice step | spacing, mm | valid | components/handles/voids | tetrahedra | groups | filled | "
+    checker = "an independent checker, inner layers included" if options.check else "`bonetk validate`"
+    out = [INTRODUCTION.format(checker=checker), "| bone, slice step | spacing, mm | valid | components/handles/voids | tetrahedra | groups | filled | "
            "left out | parted | against the label | mean least angle | s |", "|" + "---|" * 12]
     invalid = differing = 0
     done = {"|".join(line.split("|")[:3]): line for line in options.resume.read_text().splitlines()
