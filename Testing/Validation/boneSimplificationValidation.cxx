@@ -68,10 +68,9 @@ template <typename T>
 bool
 SameBytes(const std::vector<T> & a, const std::vector<T> & b)
 {
-  return a.size() == b.size() &&
-         std::equal(reinterpret_cast<const char *>(a.data()),
-                    reinterpret_cast<const char *>(a.data() + a.size()),
-                    reinterpret_cast<const char *>(b.data()));
+  return a.size() == b.size() && std::equal(reinterpret_cast<const char *>(a.data()),
+                                            reinterpret_cast<const char *>(a.data() + a.size()),
+                                            reinterpret_cast<const char *>(b.data()));
 }
 
 bool
@@ -108,16 +107,16 @@ Distance(const MeshArrays & mesh, const Faces & faces, const TriangleTree & tree
   for (const auto & f : faces)
   {
     const Vector3 &a = mesh.points[f[0]], &b = mesh.points[f[1]], &c = mesh.points[f[2]];
-    const double   longest = std::sqrt(std::max({ (b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm() }));
-    const int      n = std::max(1, static_cast<int>(std::ceil(longest / 0.7)));
-    const double   share = (b - a).cross(c - a).norm() / (n * n);
+    const double longest = std::sqrt(std::max({ (b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm() }));
+    const int    n = std::max(1, static_cast<int>(std::ceil(longest / 0.7)));
+    const double share = (b - a).cross(c - a).norm() / (n * n);
     for (int i = 0; i < n; ++i)
     {
       for (int j = 0; j < 2 * (n - i) - 1; ++j)
       {
         // Centroids of the n^2 parts of the triangle: upright ones at even j, others at odd j.
-        const double  u = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n, v = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n;
-        const double  distance = std::sqrt(tree.FindNearest(a + u * (b - a) + v * (c - a)).squaredDistance);
+        const double u = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n, v = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3.0) / n;
+        const double distance = std::sqrt(tree.FindNearest(a + u * (b - a) + v * (c - a)).squaredDistance);
         sum += share * distance;
         area += share;
         largest = std::max(largest, distance);
@@ -125,20 +124,6 @@ Distance(const MeshArrays & mesh, const Faces & faces, const TriangleTree & tree
     }
   }
   return { { "mean", area > 0 ? sum / area : 0.0 }, { "largest", largest } };
-}
-
-double
-RegionVolume(const MeshArrays & mesh, int region)
-{
-  double sum = 0.0;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-  {
-    const Id4 & v = mesh.tetrahedra[t];
-    sum += mesh.region[t] == region
-             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
-             : 0.0;
-  }
-  return sum;
 }
 
 /** Smallest dihedral angle of the cells of the cortical region, or of the others, degrees. */
@@ -173,8 +158,8 @@ Audit(const MeshArrays & first, const MeshArrays & level)
     const Faces faces = BoundaryFaces(level, region), before = BoundaryFaces(first, region);
     json        found;
     found["region"] = region;
-    found["volume"] = RegionVolume(first, region);
-    found["volumeChange"] = RegionVolume(level, region) / RegionVolume(first, region) - 1.0;
+    found["volume"] = test::RegionVolume(first, region);
+    found["volumeChange"] = test::RegionVolume(level, region) / test::RegionVolume(first, region) - 1.0;
     found["faces"] = faces.size();
     found["crossing"] = FindCrossingTriangles(faces, level.points).size();
     found["pinched"] = PinchedPoints(level, region);
@@ -199,12 +184,11 @@ DensityError(const MeshArrays & mesh, const Images & images)
   const float * density = images.ct->GetBufferPointer();
   const short * labels = images.labels->GetBufferPointer();
   const int     label = images.label;
-  const auto    found = CompareDensity(mesh,
-                                    MakeVoxelGrid(*images.ct, images.ct->GetBufferedRegion()),
-                                    [=](std::size_t offset, double & value) {
-                                      value = density[offset];
-                                      return label == 0 ? labels[offset] != 0 : labels[offset] == label;
-                                    });
+  const auto    found = CompareDensity(
+    mesh, MakeVoxelGrid(*images.ct, images.ct->GetBufferedRegion()), [=](std::size_t offset, double & value) {
+      value = density[offset];
+      return label == 0 ? labels[offset] != 0 : labels[offset] == label;
+    });
   return { { "percent", found.meanAbsolutePercent },
            { "deviation", 100.0 * found.standardDeviation / found.range },
            { "voxels", found.voxels },
@@ -239,7 +223,8 @@ Levels(const std::string & file, const std::string & prefix, const Images & imag
     found["surfaceError"] = level.surfaceError;
     for (int reason = 1; i > 0 && reason < MeshOperationCount; ++reason)
     {
-      found["refused"][MeshOperationName(static_cast<MeshOperation>(reason))] = filter->GetReport()[i - 1].refused[reason];
+      found["refused"][MeshOperationName(static_cast<MeshOperation>(reason))] =
+        filter->GetReport()[i - 1].refused[reason];
     }
     out["levels"].push_back(found);
   }
@@ -265,8 +250,9 @@ Time(const std::string & file, int repeat, const std::vector<IdType> & counts)
     wall = std::min(wall, seconds.first);
     processor = std::min(processor, seconds.second);
   }
-  std::cout << json{ { "tetrahedra", mesh->GetNumberOfTetrahedra() }, { "seconds", wall }, { "processorSeconds", processor } }
-            << '\n';
+  std::cout << json{
+    { "tetrahedra", mesh->GetNumberOfTetrahedra() }, { "seconds", wall }, { "processorSeconds", processor }
+  } << '\n';
   return 0;
 }
 /** Random bodies, every twentieth tiled from random contours, each under random bounds. */
@@ -312,8 +298,8 @@ Property(unsigned first, unsigned last)
 int
 main(int argc, char * argv[])
 {
-  const std::string         job = argc > 1 ? argv[1] : "";
-  std::vector<IdType>       counts;
+  const std::string   job = argc > 1 ? argv[1] : "";
+  std::vector<IdType> counts;
   for (int i = job == "levels" ? 7 : job == "time" ? 4 : argc; i < argc; ++i)
   {
     counts.push_back(std::stoi(argv[i]));
@@ -342,7 +328,8 @@ main(int argc, char * argv[])
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX CT LABELS LABEL COUNT... | time L1.vtu REPEAT COUNT... | "
+  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX CT LABELS LABEL COUNT... | time L1.vtu REPEAT "
+               "COUNT... | "
                "property FIRST LAST | compare MESH.vtu CT LABELS LABEL\n";
   return 2;
 }

@@ -242,6 +242,21 @@ MakeBall(int n, const std::vector<int> & shells, double radius, double jitter, u
   MakePositive(mesh);
   return mesh;
 }
+
+/** Volume of the cells of a region, mm^3. */
+inline double
+RegionVolume(const MeshArrays & mesh, int region)
+{
+  double sum = 0.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 & v = mesh.tetrahedra[t];
+    sum += mesh.region[t] == region
+             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
+             : 0.0;
+  }
+  return sum;
+}
 } // namespace bone::test
 
 #endif

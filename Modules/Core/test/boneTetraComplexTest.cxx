@@ -32,20 +32,6 @@ Compacted(const TetraComplex & complex, const MeshArrays & source)
   return complex.Compact(source, points, cells);
 }
 
-double
-Volume(const MeshArrays & mesh, int region)
-{
-  double sum = 0;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-  {
-    const Id4 & v = mesh.tetrahedra[t];
-    sum += mesh.region[t] == region
-             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
-             : 0.0;
-  }
-  return sum;
-}
-
 /** Two tetrahedra on one triangle, the apices on the axis. */
 MeshArrays
 Bipyramid(double lower, double upper)
@@ -123,11 +109,11 @@ TEST(TetraFlips, TwoThreeFlipIsMadeWhereItHelpsAndNotElsewhere)
 
   const auto   flat = Bipyramid(0.2, 0.2);
   TetraComplex complex(flat);
-  const double volume = Volume(flat, 1);
+  const double volume = test::RegionVolume(flat, 1);
   EXPECT_THAT(flipAt(complex), testing::ElementsAre(MeshOperation::Done));
   EXPECT_EQ(complex.AliveCells(), 3);
   const auto made = Compacted(complex, flat);
-  EXPECT_NEAR(Volume(made, 1), volume, 1e-12);
+  EXPECT_NEAR(test::RegionVolume(made, 1), volume, 1e-12);
   EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
 }
 
@@ -139,12 +125,12 @@ TEST(TetraFlips, ThreeTwoFlipUndoesAThinFan)
   fan.region = { 1, 1, 1 };
   test::MakePositive(fan);
   TetraComplex complex(fan);
-  const double volume = Volume(fan, 1);
+  const double volume = test::RegionVolume(fan, 1);
   const auto   result = RemoveEdge(complex, 3, 4);
   ASSERT_EQ(result.outcome, MeshOperation::Done);
   EXPECT_EQ(complex.AliveCells(), 2);
   const auto made = Compacted(complex, fan);
-  EXPECT_NEAR(Volume(made, 1), volume, 1e-12);
+  EXPECT_NEAR(test::RegionVolume(made, 1), volume, 1e-12);
   EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
   EXPECT_EQ(RemoveEdge(complex, 0, 1).outcome, MeshOperation::Surface) << "an edge of the boundary";
 }
@@ -177,9 +163,7 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
     {
       before = std::max(before, CellCosine(complex, t));
     }
-    const auto count = seed == 3   ? FlipCellCount::NotMore
-                       : seed == 5 ? FlipCellCount::Same
-                                   : FlipCellCount::Any;
+    const auto count = seed == 3 ? FlipCellCount::NotMore : seed == 5 ? FlipCellCount::Same : FlipCellCount::Any;
     const auto report = ImproveByFlips(complex, { 0.5, 4, count }, [&](const FlipResult & flip) {
       changed.resize(complex.Size(), 0);
       for (IdType t : flip.created)
@@ -205,7 +189,8 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
     EXPECT_TRUE(seed != 5 || made.tetrahedra.size() == mesh.tetrahedra.size());
     for (int region = 1; region <= 3; ++region)
     {
-      EXPECT_NEAR(Volume(made, region), Volume(mesh, region), 1e-9 * Volume(mesh, region));
+      EXPECT_NEAR(
+        test::RegionVolume(made, region), test::RegionVolume(mesh, region), 1e-9 * test::RegionVolume(mesh, region));
     }
     EXPECT_EQ(BoundaryFaces(made).size(), BoundaryFaces(mesh).size());
     EXPECT_EQ(BoundaryFaces(made, 2).size(), BoundaryFaces(mesh, 2).size());
@@ -287,7 +272,8 @@ TEST(TetraComplex, SplitEdgesKeepVolumeAndTopologyAndCanBeCollapsed)
   EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
   for (int region = 1; region <= 2; ++region)
   {
-    EXPECT_NEAR(Volume(made, region), Volume(mesh, region), 1e-9 * Volume(mesh, region));
+    EXPECT_NEAR(
+      test::RegionVolume(made, region), test::RegionVolume(mesh, region), 1e-9 * test::RegionVolume(mesh, region));
   }
   for (IdType p = count; p < static_cast<IdType>(complex.Points().size()); ++p)
   {

@@ -142,20 +142,6 @@ private:
     Require(right, "points are no subset");
   }
 
-  static double
-  Volume(const MeshArrays & mesh, int region)
-  {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    {
-      const Id4 & v = mesh.tetrahedra[t];
-      sum += mesh.region[t] == region
-               ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
-               : 0.0;
-    }
-    return sum;
-  }
-
   /** Largest distance of random points on faces of a mesh to those of the other. */
   double
   Distance(const MeshArrays & from, const Faces & fromFaces, const MeshArrays & to, const Faces & toFaces)
@@ -192,7 +178,7 @@ private:
     {
       const Faces  before = BoundaryFaces(m_Mesh, region), now = BoundaryFaces(level, region);
       const double largest = std::max(Distance(level, now, m_Mesh, before), Distance(m_Mesh, before, level, now));
-      const double change = std::abs(Volume(level, region) / Volume(m_Mesh, region) - 1.0);
+      const double change = std::abs(test::RegionVolume(level, region) / test::RegionVolume(m_Mesh, region) - 1.0);
       const auto   name = " of region " + std::to_string(region);
       Require(FindCrossingTriangles(now, level.points).empty(), "crossing triangles" + name);
       Require(largest <= bound * (1 + 1e-9) + 1e-9, "distance " + std::to_string(largest) + name);

@@ -57,20 +57,6 @@ Body(unsigned seed)
   return seed % 4 == 1 ? test::MakeBall(4, { 1, 1, 2 }, 14, 0.15, seed) : test::MakeTube(shape);
 }
 
-double
-Volume(const MeshArrays & mesh, int region)
-{
-  double sum = 0;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-  {
-    const Id4 & v = mesh.tetrahedra[t];
-    sum += mesh.region[t] == region
-             ? SignedVolume(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]])
-             : 0.0;
-  }
-  return sum;
-}
-
 FilterType::Pointer
 Simplified(const MeshArrays & mesh, const std::vector<IdType> & levels)
 {
@@ -117,7 +103,7 @@ TEST(TetraCollapseFilter, EveryLevelIsValidWithItsLayersAndASubsetOfThePoints)
       EXPECT_EQ(level.neighbors, ComputeFaceNeighbors(level.tetrahedra));
       for (int region = 1; region <= 3; ++region)
       {
-        EXPECT_NEAR(Volume(level, region) / Volume(mesh, region), 1.0, i == 1 ? 0.02 : 0.15)
+        EXPECT_NEAR(test::RegionVolume(level, region) / test::RegionVolume(mesh, region), 1.0, i == 1 ? 0.02 : 0.15)
           << "seed " << seed << ", level " << i + 1 << ", region " << region;
         EXPECT_TRUE(FindCrossingTriangles(BoundaryFaces(level, region), level.points).empty());
       }

@@ -39,13 +39,13 @@ struct TilingParameters
  *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
  * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.
  * 5. A slab that cannot be knitted so (pieces that no chain of rings describes, bends that turn tetrahedra over, walls
- *    that would cross) is filled as a whole from the overlay of its slices' triangulations, which always can be done;
- *    vertices between the slices are left where they cannot be removed.
+ *    that would cross or are twisted) is filled as a whole from the overlay of its slices' triangulations, which always
+ * can be done; vertices between the slices are left where they cannot be removed.
  *
  * A hole that is bone above and below would be a void; it is closed and counted. Orientation is decided by exact
  * predicates and the result is validated: the function returns a valid mesh or throws std::runtime_error naming the
- * slice (a correspondence that names a contour which is not there, or joins pieces that lie beside each other and cannot
- * be joined; pieces that overlap and distance joined so are not joined but reported).
+ * slice (a given correspondence that names a contour which is not there, or pieces that lie beside each other and
+ * cannot be joined; where no correspondence was given, such pieces end and begin there, and the report says so).
  *
  * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
  * \ref MeshArrays. Deterministic. */

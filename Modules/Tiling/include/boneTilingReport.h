@@ -29,7 +29,7 @@ struct TilingReport
   int otherAxes{ 0 };        ///< groups that needed another medial axis above
   int filledSlabs{ 0 };      ///< spaces between two slices filled by overlaying the triangulations of the slices
   int filledEnds{ 0 };       ///< ends closed in that way
-  int partedGroups{ 0 };     ///< of the slabs in filled ones, whose pieces do not overlap: they end and begin there
+  int partedGroups{ 0 };     ///< groups in filled slabs whose pieces do not all overlap and so are not joined
 
   /** The pieces' correspondence in all slabs, as it was given or found. */
   ContourCorrespondence correspondence;

@@ -580,7 +580,7 @@ TileInFrame(const OwnFrame & frame, const TilingParameters & parameters, TilingR
     {
       for (Vector3 & p : mesh->points)
       {
-        p = frame.ToSpace(p);
+        p = frame.ToGivenPlace(p);
       }
       const MeshValidation validation = ValidateMesh(*mesh);
       if (!validation.IsValid())

@@ -145,12 +145,14 @@ OwnFrame::OwnFrame(const ContourStack & stack, bool rounded)
 Vector3
 OwnFrame::ToSpace(const Vector3 & p) const
 {
-  if (m_Stack == m_Own)
-  {
-    return p;
-  }
+  return m_Stack == m_Own ? p : m_Own->FromPlane({ p.x(), p.y() }, p.z());
+}
+
+Vector3
+OwnFrame::ToGivenPlace(const Vector3 & p) const
+{
   const auto given = m_Given.find({ { p.x(), p.y(), p.z() } });
-  return given != m_Given.end() ? given->second : m_Own->FromPlane({ p.x(), p.y() }, p.z());
+  return given != m_Given.end() ? given->second : this->ToSpace(p);
 }
 } // namespace tiling
 } // namespace bone

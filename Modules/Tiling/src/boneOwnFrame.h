@@ -28,9 +28,13 @@ public:
     return *m_Stack;
   }
 
-  /** The place in space of a point in the frame; points of the contours are exactly those that were given. */
+  /** The place in space of a point in the frame, but for rounding. */
   Vector3
   ToSpace(const Vector3 & p) const;
+
+  /** The same; points of the contours are exactly those that were given. */
+  Vector3
+  ToGivenPlace(const Vector3 & p) const;
 
 private:
   ContourStack::Pointer                    m_Own;   ///< in space
