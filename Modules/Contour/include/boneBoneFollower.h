@@ -22,7 +22,7 @@ struct FollowParameters
   double valleyDepth{ 0.2 };  ///< a contact of less mean depth, as a share of its sides' height, is bone throughout
   double contactWidth{ 4.0 }; ///< and joins two pieces where it is at least so long
   double contactArea{ 8.0 };  ///< and such contact exceeds that with a valley, along the bone so far, by that area
-  double suddenArea{ 150.0 };   ///< changes of a slice's area above it and by half are reported, mm^2
+  double suddenArea{ 150.0 }; ///< changes of a slice's area above it and by half are reported, mm^2
   double lookAhead{ 6.0 };    ///< how far beyond an end bone is looked for, to report a gap
 };
 

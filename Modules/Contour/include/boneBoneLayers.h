@@ -31,14 +31,15 @@ struct LayerParameters
   double cavityLength{ 20.0 };       ///< height over which a medullary contour must last
 };
 
-/** \brief Finds the endosteal contour of each piece of bone without holes, and the boundary of its medullary cavity.
+/** \brief Finds the endosteal contours of each piece of bone, and the boundaries of medullary cavities in them.
  *
- * From each point of a periosteal contour a profile of the CT runs inward; the cortex ends where the density falls
- * half-way from its maximum to the level inside. Thickness is filtered along the surface and across slices (median,
- * then Gaussian), and the endosteal contour is where the depth below the periosteal contour equals the thickness of the
- * nearest point: it cannot come nearer than the minimum distance. It is opened and closed with a disk, its largest part
- * kept, and kept only in chains of slices that last. The medullary boundary is a level of the smoothed CT inside it,
- * treated alike. Returns lines for the report. */
+ * From each point of a periosteal contour, and of the holes in it, a profile of the CT runs inward; the cortex ends
+ * where the density falls half-way from its maximum to the level inside. Thickness is filtered along the surface and
+ * across slices (median, then Gaussian), and the endosteal contours are where the depth below the periosteal contour
+ * equals the thickness of the nearest point: they cannot come nearer than the minimum distance. What they bound is
+ * closed and opened with a disk; where opposite cortices meet it falls into several parts, each with a contour. Around
+ * a hole it is parted at its narrowest. Contours stay the minimum distance apart and are kept only in chains of slices
+ * that last. Medullary boundaries are levels of the smoothed CT inside, treated alike. Returns lines for the report. */
 std::vector<std::string>
 FindInnerLayers(std::vector<BoneSection> & sections,
                 const PlaneSource &        planes,

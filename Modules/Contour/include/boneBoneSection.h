@@ -11,13 +11,13 @@
 
 namespace bone
 {
-/** \brief One piece of bone on a slice: a periosteal loop with what lies in it. Empty polygons: there is none. */
+/** \brief One piece of bone on a slice: a periosteal loop with what lies in it. */
 struct BonePiece
 {
   Polygon              outer;     ///< counter-clockwise
   std::vector<Polygon> holes;     ///< clockwise
-  Polygon              endosteal; ///< counter-clockwise, within outer
-  Polygon              medullary; ///< counter-clockwise, within endosteal
+  std::vector<Polygon> endosteal; ///< counter-clockwise, within outer, beside each other and the holes
+  std::vector<Polygon> medullary; ///< counter-clockwise, each within an endosteal one
 };
 
 /** \brief The pieces of bone on one slice, in plane coordinates (mm). */
@@ -42,18 +42,15 @@ PolygonsOverlap(const Polygon & a, const Polygon & b);
 std::vector<std::string>
 DropShortLived(std::vector<BoneSection> & sections, int minimumSlices, double minimumVolume);
 
-/** Candidates for an inner contour, by slice and piece. */
-using LayerCandidates = std::vector<std::vector<std::vector<Polygon>>>;
-
-/** Chooses at most one candidate for the member `inner` of each piece: the one whose chain of overlapping candidates on
- * neighbouring slices has the largest volume. Chains of the chosen that last fewer than `minimumSlices` slices, or
- * never reach `smallestArea` (mm^2), are left out. Returns the number of contours left out that way. */
+/** Drops the inner contours (the member `inner` of each piece) in chains of overlapping ones on neighbouring slices
+ * that last fewer than `minimumSlices` slices, or never reach `smallestArea` (mm^2). Returns the number of contours
+ * dropped.
+ */
 int
-ChooseLastingLayers(std::vector<BoneSection> & sections,
-                    Polygon BonePiece::*    inner,
-                    const LayerCandidates & candidates,
-                    double                  smallestArea,
-                    int                     minimumSlices);
+DropShortLayers(std::vector<BoneSection> & sections,
+                std::vector<Polygon> BonePiece::*inner,
+                double                           smallestArea,
+                int                              minimumSlices);
 
 /** The sections as contours: layers 0, 1, 2 with regions Cortical, Spongy, Medullary; holes have layer 0 and region
  * Outside. Uses the stack's frame. */

@@ -26,9 +26,9 @@ namespace bone
  *   their slices; with FollowLabel too the bone is followed from both.
  *
  * At least one of the optional inputs must be there. The output is a \ref ContourStack with layers 0 (periosteal, holes
- * have region Outside), 1 (endosteal) and 2 (medullary). A periosteal contour without holes has at most one endosteal
- * contour, and that at most one medullary contour; nested contours keep MinimumLayerDistance. Where the bone meets the
- * first or last image slice the stack is open there and a warning says so.
+ * have region Outside), 1 (endosteal) and 2 (medullary). A periosteal contour may have several endosteal ones beside
+ * each other, none of them around a hole, and these several medullary ones; nested contours keep MinimumLayerDistance.
+ * Where the bone meets the first or last image slice the stack is open there and a warning says so.
  *
  * Inner layers: \ref FindInnerLayers. Snakes: \ref EvolveSnake. Results do not depend on the number of threads.
  *

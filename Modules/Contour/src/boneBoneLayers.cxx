@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -27,7 +28,8 @@ struct SurfaceSample
   double        length; // of the profile, mm
 };
 constexpr double SharpestShare = 0.05;
-using SliceSamples = std::vector<std::vector<SurfaceSample>>; // by piece
+using LoopSamples = std::vector<SurfaceSample>;
+using SliceSamples = std::vector<LoopSamples>; // by loop: each piece's outer contour, then its holes
 
 class LayerFinder
 {
@@ -47,11 +49,12 @@ public:
   SliceSamples
   MeasureThickness(const BoneSection & section) const;
 
+  /** `samples`: of the slice; `first`: the piece's first loop. */
   std::vector<Polygon>
-  FindEndosteal(const BonePiece & piece, const std::vector<SurfaceSample> & samples) const;
+  FindEndosteal(const BonePiece & piece, const SliceSamples & samples, std::size_t first) const;
 
   std::vector<Polygon>
-  FindMedullary(const BonePiece & piece, const PlaneField & plane) const;
+  FindMedullary(const Polygon & endosteal, const PlaneField & plane) const;
 
   PlaneField
   PlaneOf(const BoneSection & section) const
@@ -72,11 +75,20 @@ private:
     return CoveringGrid({ polygon }, margin, polygon.front(), m_Spacing);
   }
 
+  LoopSamples
+  MeasureLoop(const PlaneField & plane, const DistanceField & depth, const Polygon & outline) const;
+
   CorticalProfile
   ProfileAt(const PlaneField & plane, const DistanceField & depth, const SurfaceSample & sample, double step) const;
 
   std::vector<Polygon>
-  Regularise(PlaneField & field, const PlaneField & allowed) const;
+  Regularise(PlaneField & field, const PlaneField & allowed, const std::vector<Polygon> & holes) const;
+
+  void
+  PartAround(PlaneField & field, const std::vector<Polygon> & holes) const;
+
+  std::vector<Polygon>
+  GrowApart(const std::vector<Polygon> & cores, const PlaneGrid & grid) const;
 
   const PlaneSource &     m_Planes;
   const LayerParameters & m_Parameters;
@@ -88,43 +100,54 @@ private:
 SliceSamples
 LayerFinder::MeasureThickness(const BoneSection & section) const
 {
-  SliceSamples result(section.pieces.size());
+  SliceSamples result;
   if (section.pieces.empty())
   {
     return result;
   }
   const PlaneField plane = this->PlaneOf(section);
-  const double     step = 0.25 * m_Spacing.minCoeff();
-  for (std::size_t p = 0; p < section.pieces.size(); ++p)
+  for (const BonePiece & piece : section.pieces)
   {
-    const BonePiece & piece = section.pieces[p];
-    if (!piece.holes.empty())
+    std::vector<Polygon> outlines(1, ResampleUniform(piece.outer, 1.0));
+    for (const Polygon & hole : piece.holes)
     {
-      continue;
+      outlines.push_back(ResampleUniform(hole, 1.0));
     }
-    const Polygon       outline = ResampleUniform(piece.outer, 1.0);
-    const std::size_t   n = outline.size();
-    const DistanceField depth =
-      ComputeDistanceField({ outline }, this->GridAround(outline, m_Pixel), m_Parameters.maximumThickness + m_Pixel);
-    std::vector<CorticalProfile> profiles;
-    for (std::size_t i = 0; i < n; ++i)
+    const DistanceField depth = ComputeDistanceField(
+      outlines, this->GridAround(outlines.front(), m_Pixel), m_Parameters.maximumThickness + m_Pixel);
+    for (const Polygon & outline : outlines)
     {
-      const Vector2 tangent = (outline[(i + 2) % n] - outline[(i + n - 2) % n]).normalized();
-      result[p].push_back({ outline[i], { -tangent.y(), tangent.x() }, 0.0, {}, 0.0 });
-      profiles.push_back(this->ProfileAt(plane, depth, result[p].back(), step));
+      result.push_back(this->MeasureLoop(plane, depth, outline));
     }
-    for (std::size_t i = 0; i < n; ++i)
+  }
+  return result;
+}
+
+// Bone lies to the left of outlines and of holes.
+LoopSamples
+LayerFinder::MeasureLoop(const PlaneField & plane, const DistanceField & depth, const Polygon & outline) const
+{
+  const double                 step = 0.25 * m_Spacing.minCoeff();
+  const std::size_t            n = outline.size();
+  LoopSamples                  result;
+  std::vector<CorticalProfile> profiles;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const Vector2 tangent = (outline[(i + 2) % n] - outline[(i + n - 2) % n]).normalized();
+    result.push_back({ outline[i], { -tangent.y(), tangent.x() }, 0.0, {}, 0.0 });
+    profiles.push_back(this->ProfileAt(plane, depth, result.back(), step));
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const auto &    before = profiles[(i + n - 1) % n].values;
+    const auto &    after = profiles[(i + 1) % n].values;
+    CorticalProfile mean = profiles[i];
+    for (std::size_t k = 0; k < std::min({ before.size(), mean.values.size(), after.size() }); ++k)
     {
-      const auto &    before = profiles[(i + n - 1) % n].values;
-      const auto &    after = profiles[(i + 1) % n].values;
-      CorticalProfile mean = profiles[i];
-      for (std::size_t k = 0; k < std::min({ before.size(), mean.values.size(), after.size() }); ++k)
-      {
-        mean.values[k] = 0.25 * (before[k] + 2.0 * mean.values[k] + after[k]);
-      }
-      result[p][i].edges = FindCorticalEdges(mean, m_Rules);
-      result[p][i].length = static_cast<double>(mean.values.size()) * step - mean.lead * step;
+      mean.values[k] = 0.25 * (before[k] + 2.0 * mean.values[k] + after[k]);
     }
+    result[i].edges = FindCorticalEdges(mean, m_Rules);
+    result[i].length = static_cast<double>(mean.values.size()) * step - mean.lead * step;
   }
   return result;
 }
@@ -159,9 +182,9 @@ BlurOf(const std::vector<SliceSamples> & samples, double pixel)
   std::vector<double> blurs;
   for (const SliceSamples & slice : samples)
   {
-    for (const auto & piece : slice)
+    for (const auto & loop : slice)
     {
-      for (const SurfaceSample & sample : piece)
+      for (const SurfaceSample & sample : loop)
       {
         if (sample.edges.blur > 0.0)
         {
@@ -184,9 +207,9 @@ BlurOf(const std::vector<SliceSamples> & samples, double pixel)
 void
 SetThickness(SliceSamples & slice, double blur, double least, double pixel)
 {
-  for (auto & piece : slice)
+  for (auto & loop : slice)
   {
-    for (SurfaceSample & sample : piece)
+    for (SurfaceSample & sample : loop)
     {
       const CorticalEdges & edges = sample.edges;
       const double          half = 0.5 * ThicknessOfBlurredLayer(edges.inner - edges.outer, blur);
@@ -198,35 +221,108 @@ SetThickness(SliceSamples & slice, double blur, double least, double pixel)
   }
 }
 
-// Closes and opens the region where `field` is positive with a disk, within the region where `allowed` is positive, and
-// returns the parts that are large enough to be of use.
+// The contours of where the field exceeds a level, without those of what is not within.
 std::vector<Polygon>
-LayerFinder::Regularise(PlaneField & field, const PlaneField & allowed) const
+OutlinesOf(const PlaneField & field, double level)
 {
-  const double      radius = m_Parameters.smallestRadius;
-  const double      limit = radius + 2.0 * m_Spacing.maxCoeff();
-  const PlaneGrid & grid = field.grid;
-  const auto        outlines = [](const PlaneField & f, double level) {
-    std::vector<Polygon> loops = ExtractLevelContours(f, level);
-    loops.erase(
-      std::remove_if(loops.begin(), loops.end(), [](const Polygon & loop) { return SignedArea(loop) <= 0.0; }),
-      loops.end());
-    return loops;
-  };
-  auto loops = outlines(field, 0.0);
-  loops = outlines(ComputeDistanceField(loops, grid, limit).distance, -radius);
-  field = ComputeDistanceField(loops, grid, limit).distance;
-  for (std::size_t n = 0; n < field.values.size(); ++n)
-  {
-    field.values[n] = std::min(field.values[n] - static_cast<float>(radius), allowed.values[n]);
-  }
-  loops = outlines(field, 0.0);
-  const auto cores = outlines(ComputeDistanceField(loops, grid, limit).distance, radius);
+  std::vector<Polygon> loops = ExtractLevelContours(field, level);
+  loops.erase(std::remove_if(loops.begin(), loops.end(), [](const Polygon & loop) { return SignedArea(loop) <= 0.0; }),
+              loops.end());
+  return loops;
+}
 
-  std::vector<Polygon> result;
+double
+DistanceToSegment(const Vector2 & q, const Vector2 & a, const Vector2 & b)
+{
+  const Vector2 along = b - a;
+  const double  t = std::clamp((q - a).dot(along) / std::max(along.squaredNorm(), 1e-30), 0.0, 1.0);
+  return (q - a - t * along).norm();
+}
+
+// The narrowest place between a clockwise loop and the loops around or beside it.
+std::pair<Vector2, Vector2>
+NarrowestPlace(const std::vector<Polygon> & loops, const Polygon & inner)
+{
+  std::pair<Vector2, Vector2> place(inner.front(), inner.front());
+  double                      least = std::numeric_limits<double>::max();
+  for (const Polygon & other : loops)
+  {
+    if (&other == &inner || PointInPolygon(other.front(), inner))
+    {
+      continue;
+    }
+    for (const Vector2 & p : inner)
+    {
+      for (const Vector2 & q : other)
+      {
+        if ((p - q).squaredNorm() < least)
+        {
+          least = (p - q).squaredNorm();
+          place = { p, q };
+        }
+      }
+    }
+  }
+  return place;
+}
+
+// Parts what goes round a hole at its narrowest, so that a contour bounds it.
+void
+LayerFinder::PartAround(PlaneField & field, const std::vector<Polygon> & holes) const
+{
+  for (std::size_t round = 0; round < holes.size(); ++round)
+  {
+    const std::vector<Polygon> loops = ExtractLevelContours(field, 0.0);
+    const auto                 around = std::find_if(loops.begin(), loops.end(), [&holes](const Polygon & loop) {
+      return SignedArea(loop) < 0.0 && std::any_of(holes.begin(), holes.end(), [&loop](const Polygon & hole) {
+               return PointInPolygon(hole.front(), loop);
+             });
+    });
+    if (around == loops.end())
+    {
+      return;
+    }
+    const auto place = NarrowestPlace(loops, *around);
+    for (int j = 0; j < field.grid.size[1]; ++j)
+    {
+      for (int i = 0; i < field.grid.size[0]; ++i)
+      {
+        const double away = DistanceToSegment(field.grid.Node(i, j), place.first, place.second);
+        float &      value = field.values[field.grid.Offset(i, j)];
+        value = std::min(value, static_cast<float>(away - m_Parameters.minimumDistance));
+      }
+    }
+  }
+}
+
+// Grows the cores by the smallest radius, as far as they stay the least distance apart.
+std::vector<Polygon>
+LayerFinder::GrowApart(const std::vector<Polygon> & cores, const PlaneGrid & grid) const
+{
+  const auto              radius = static_cast<float>(m_Parameters.smallestRadius);
+  const auto              gap = static_cast<float>(m_Parameters.minimumDistance);
+  const double            limit = 2.0 * (radius + gap) + 2.0 * m_Spacing.maxCoeff();
+  std::vector<PlaneField> inside;
   for (const Polygon & core : cores)
   {
-    for (Polygon & loop : outlines(ComputeDistanceField({ core }, grid, limit).distance, -radius))
+    inside.push_back(ComputeDistanceField({ core }, grid, limit).distance);
+  }
+  std::vector<Polygon> result;
+  for (std::size_t i = 0; i < cores.size(); ++i)
+  {
+    PlaneField grown = inside[i];
+    for (std::size_t n = 0; n < grown.values.size(); ++n)
+    {
+      grown.values[n] += radius;
+      for (std::size_t j = 0; j < cores.size(); ++j)
+      {
+        if (j != i)
+        {
+          grown.values[n] = std::min(grown.values[n], 0.5F * (inside[i].values[n] - inside[j].values[n] - gap));
+        }
+      }
+    }
+    for (Polygon & loop : OutlinesOf(grown, 0.0))
     {
       if (SignedArea(loop) >= 0.4 * m_Parameters.smallestArea)
       {
@@ -237,21 +333,52 @@ LayerFinder::Regularise(PlaneField & field, const PlaneField & allowed) const
   return result;
 }
 
+// Closes and opens the region where `field` is positive with a disk, within the region where `allowed` is positive, and
+// returns the parts that are large enough to be of use. None goes round a hole.
 std::vector<Polygon>
-LayerFinder::FindEndosteal(const BonePiece & piece, const std::vector<SurfaceSample> & samples) const
+LayerFinder::Regularise(PlaneField & field, const PlaneField & allowed, const std::vector<Polygon> & holes) const
 {
-  if (samples.empty())
+  const double      radius = m_Parameters.smallestRadius;
+  const double      limit = radius + 2.0 * m_Spacing.maxCoeff();
+  const PlaneGrid & grid = field.grid;
+  const auto        outlines = [&holes](const PlaneField & f, double level) {
+    return holes.empty() ? OutlinesOf(f, level) : ExtractLevelContours(f, level);
+  };
+  auto loops = outlines(field, 0.0);
+  loops = outlines(ComputeDistanceField(loops, grid, limit).distance, -radius);
+  field = ComputeDistanceField(loops, grid, limit).distance;
+  for (std::size_t n = 0; n < field.values.size(); ++n)
   {
-    return {};
+    field.values[n] = std::min(field.values[n] - static_cast<float>(radius), allowed.values[n]);
   }
-  Polygon outline;
-  for (const SurfaceSample & sample : samples)
+  this->PartAround(field, holes);
+  loops = OutlinesOf(field, 0.0);
+  auto parts = this->GrowApart(OutlinesOf(ComputeDistanceField(loops, grid, limit).distance, radius), grid);
+  parts.erase(std::remove_if(parts.begin(),
+                             parts.end(),
+                             [&holes](const Polygon & part) {
+                               return std::any_of(holes.begin(), holes.end(), [&part](const Polygon & hole) {
+                                 return PointInPolygon(hole.front(), part);
+                               });
+                             }),
+              parts.end());
+  return parts;
+}
+
+std::vector<Polygon>
+LayerFinder::FindEndosteal(const BonePiece & piece, const SliceSamples & samples, std::size_t first) const
+{
+  std::vector<Polygon> outlines(1 + piece.holes.size());
+  for (std::size_t i = 0; i < outlines.size(); ++i)
   {
-    outline.push_back(sample.position);
+    for (const SurfaceSample & sample : samples[first + i])
+    {
+      outlines[i].push_back(sample.position);
+    }
   }
   const double        margin = m_Parameters.smallestRadius + 3.0 * m_Spacing.maxCoeff();
   const DistanceField depth =
-    ComputeDistanceField({ outline }, this->GridAround(piece.outer, margin), m_Parameters.maximumThickness + 3.0);
+    ComputeDistanceField(outlines, this->GridAround(piece.outer, margin), m_Parameters.maximumThickness + 3.0);
   PlaneField allowed = depth.distance;
   PlaneField field = depth.distance;
   for (std::size_t n = 0; n < field.values.size(); ++n)
@@ -259,27 +386,23 @@ LayerFinder::FindEndosteal(const BonePiece & piece, const std::vector<SurfaceSam
     double thickness = 0.0;
     if (depth.edge[n] >= 0)
     {
-      const auto   e = static_cast<std::size_t>(depth.edge[n]);
-      const double t = depth.along[n];
-      thickness = (1.0 - t) * samples[e].thickness + t * samples[(e + 1) % samples.size()].thickness;
+      const LoopSamples & loop = samples[first + static_cast<std::size_t>(depth.polygon[n])];
+      const auto          e = static_cast<std::size_t>(depth.edge[n]);
+      const double        t = depth.along[n];
+      thickness = (1.0 - t) * loop[e].thickness + t * loop[(e + 1) % loop.size()].thickness;
     }
     field.values[n] = static_cast<float>(std::clamp(field.values[n] - thickness, -4.0, 4.0));
     allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumDistance, -9.0, 9.0));
   }
   SmoothField(field, 0.6);
-  return this->Regularise(field, allowed);
+  return this->Regularise(field, allowed, piece.holes);
 }
 
 std::vector<Polygon>
-LayerFinder::FindMedullary(const BonePiece & piece, const PlaneField & plane) const
+LayerFinder::FindMedullary(const Polygon & endosteal, const PlaneField & plane) const
 {
-  if (piece.endosteal.empty())
-  {
-    return {};
-  }
   const double margin = m_Parameters.smallestRadius + 3.0 * m_Spacing.maxCoeff();
-  PlaneField   allowed =
-    ComputeDistanceField({ piece.endosteal }, this->GridAround(piece.endosteal, margin), 2.0 * margin).distance;
+  PlaneField allowed = ComputeDistanceField({ endosteal }, this->GridAround(endosteal, margin), 2.0 * margin).distance;
   PlaneField field = allowed;
   PlaneField weight = allowed;
   for (int j = 0; j < field.grid.size[1]; ++j)
@@ -304,7 +427,7 @@ LayerFinder::FindMedullary(const BonePiece & piece, const PlaneField & plane) co
   {
     field.values[n] = std::min(field.values[n], allowed.values[n]);
   }
-  return this->Regularise(field, allowed);
+  return this->Regularise(field, allowed, {});
 }
 
 // Samples of a few slices, found by position.
@@ -314,9 +437,9 @@ public:
   SampleBuckets(const SliceSamples & samples, double cell)
     : m_Cell(cell)
   {
-    for (const auto & piece : samples)
+    for (const auto & loop : samples)
     {
-      for (const SurfaceSample & sample : piece)
+      for (const SurfaceSample & sample : loop)
       {
         m_Buckets[{ CellOf(sample.position.x()), CellOf(sample.position.y()) }].push_back(&sample);
       }
@@ -391,9 +514,9 @@ FilterThickness(const std::vector<BoneSection> &  sections,
   std::vector<SliceSamples> result = samples;
   parallel(samples.size(), [&](std::size_t k) {
     std::vector<std::pair<double, double>> values; // thickness, weight
-    for (auto & piece : result[k])
+    for (auto & loop : result[k])
     {
-      for (SurfaceSample & sample : piece)
+      for (SurfaceSample & sample : loop)
       {
         values.clear();
         for (std::size_t other = 0; other < samples.size(); ++other)
@@ -461,11 +584,12 @@ FindInnerLayers(std::vector<BoneSection> & sections,
   samples = FilterThickness(sections, samples, parameters.smoothing, true, parallel);
   samples = FilterThickness(sections, samples, 0.7 * parameters.smoothing, false, parallel);
 
-  LayerCandidates candidates(sections.size());
   parallel(sections.size(), [&](std::size_t k) {
-    for (std::size_t p = 0; p < sections[k].pieces.size(); ++p)
+    std::size_t first = 0;
+    for (BonePiece & piece : sections[k].pieces)
     {
-      candidates[k].push_back(finder.FindEndosteal(sections[k].pieces[p], samples[k][p]));
+      piece.endosteal = finder.FindEndosteal(piece, samples[k], first);
+      first += 1 + piece.holes.size();
     }
   });
   const auto report = [](std::vector<std::string> & lines, int count, const char * what) {
@@ -476,11 +600,8 @@ FindInnerLayers(std::vector<BoneSection> & sections,
   };
   std::vector<std::string> lines;
   report(lines,
-         ChooseLastingLayers(sections,
-                             &BonePiece::endosteal,
-                             candidates,
-                             parameters.smallestArea,
-                             SlicesIn(parameters.minimumLength, sections)),
+         DropShortLayers(
+           sections, &BonePiece::endosteal, parameters.smallestArea, SlicesIn(parameters.minimumLength, sections)),
          "endosteal");
   if (parameters.numberOfLayers < 3)
   {
@@ -488,17 +609,19 @@ FindInnerLayers(std::vector<BoneSection> & sections,
   }
   parallel(sections.size(), [&](std::size_t k) {
     const PlaneField plane = sections[k].pieces.empty() ? PlaneField{} : finder.PlaneOf(sections[k]);
-    for (std::size_t p = 0; p < sections[k].pieces.size(); ++p)
+    for (BonePiece & piece : sections[k].pieces)
     {
-      candidates[k][p] = finder.FindMedullary(sections[k].pieces[p], plane);
+      piece.medullary.clear();
+      for (const Polygon & endosteal : piece.endosteal)
+      {
+        const auto found = finder.FindMedullary(endosteal, plane);
+        piece.medullary.insert(piece.medullary.end(), found.begin(), found.end());
+      }
     }
   });
   report(lines,
-         ChooseLastingLayers(sections,
-                             &BonePiece::medullary,
-                             candidates,
-                             parameters.smallestCavity,
-                             SlicesIn(parameters.cavityLength, sections)),
+         DropShortLayers(
+           sections, &BonePiece::medullary, parameters.smallestCavity, SlicesIn(parameters.cavityLength, sections)),
          "medullary");
   return lines;
 }

@@ -92,7 +92,7 @@ struct Item
 {
   std::size_t     slice;
   std::size_t     piece;
-  std::size_t     hole; // for holes
+  std::size_t     index; // of a hole or an inner contour in its piece
   const Polygon * polygon;
 };
 
@@ -199,7 +199,7 @@ DropHoles(std::vector<BoneSection> & sections, int minimumSlices)
     if (slices[g] < minimumSlices && open[g] == 0)
     {
       auto & holes = sections[items[i].slice].pieces[items[i].piece].holes;
-      holes.erase(holes.begin() + static_cast<std::ptrdiff_t>(items[i].hole));
+      holes.erase(holes.begin() + static_cast<std::ptrdiff_t>(items[i].index));
       ++dropped;
     }
   }
@@ -214,44 +214,6 @@ SliceThickness(const std::vector<BoneSection> & sections, std::size_t k)
   return above > below ? (sections[above].height - sections[below].height) / static_cast<double>(above - below) : 0.0;
 }
 
-void
-ChooseByVolume(std::vector<BoneSection> & sections, Polygon BonePiece::*inner, const LayerCandidates & candidates)
-{
-  std::vector<Item> items;
-  for (std::size_t k = 0; k < sections.size(); ++k)
-  {
-    for (std::size_t p = 0; p < sections[k].pieces.size(); ++p)
-    {
-      (sections[k].pieces[p].*inner).clear();
-      for (const Polygon & candidate : candidates[k][p])
-      {
-        items.push_back({ k, p, 0, &candidate });
-      }
-    }
-  }
-  std::vector<char>   linked;
-  Groups              groups = LinkItems(items, linked);
-  std::vector<double> volume(items.size(), 0.0);
-  for (std::size_t i = 0; i < items.size(); ++i)
-  {
-    volume[groups.Find(i)] += SignedArea(*items[i].polygon);
-  }
-  for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end)
-  {
-    std::size_t best = begin;
-    for (end = begin;
-         end < items.size() && items[end].slice == items[begin].slice && items[end].piece == items[begin].piece;
-         ++end)
-    {
-      const double difference = volume[groups.Find(end)] - volume[groups.Find(best)];
-      if (difference > 0.0 || (difference == 0.0 && SignedArea(*items[end].polygon) > SignedArea(*items[best].polygon)))
-      {
-        best = end;
-      }
-    }
-    sections[items[best].slice].pieces[items[best].piece].*inner = *items[best].polygon;
-  }
-}
 } // namespace
 
 bool
@@ -372,26 +334,22 @@ DropShortLived(std::vector<BoneSection> & sections, int minimumSlices, double mi
 }
 
 int
-ChooseLastingLayers(std::vector<BoneSection> & sections,
-                    Polygon BonePiece::*    inner,
-                    const LayerCandidates & candidates,
-                    double                  smallestArea,
-                    int                     minimumSlices)
+DropShortLayers(std::vector<BoneSection> & sections,
+                std::vector<Polygon> BonePiece::*inner,
+                double                           smallestArea,
+                int                              minimumSlices)
 {
-  int occupied = 0;
-  for (std::size_t k = 0; k < sections.size(); ++k)
-  {
-    occupied += !sections[k].pieces.empty();
-  }
-  ChooseByVolume(sections, inner, candidates);
+  int               occupied = 0;
   std::vector<Item> items;
   for (std::size_t k = 0; k < sections.size(); ++k)
   {
+    occupied += !sections[k].pieces.empty();
     for (std::size_t p = 0; p < sections[k].pieces.size(); ++p)
     {
-      if (!(sections[k].pieces[p].*inner).empty())
+      const auto & contours = sections[k].pieces[p].*inner;
+      for (std::size_t i = 0; i < contours.size(); ++i)
       {
-        items.push_back({ k, p, 0, &(sections[k].pieces[p].*inner) });
+        items.push_back({ k, p, i, &contours[i] });
       }
     }
   }
@@ -404,12 +362,13 @@ ChooseLastingLayers(std::vector<BoneSection> & sections,
     good[groups.Find(i)] |= SignedArea(*items[i].polygon) >= smallestArea;
   }
   int removed = 0;
-  for (std::size_t i = 0; i < items.size(); ++i)
+  for (std::size_t i = items.size(); i-- > 0;)
   {
     const std::size_t g = groups.Find(i);
     if (good[g] == 0 || slices[g] < std::min(minimumSlices, occupied))
     {
-      (sections[items[i].slice].pieces[items[i].piece].*inner).clear();
+      auto & contours = sections[items[i].slice].pieces[items[i].piece].*inner;
+      contours.erase(contours.begin() + static_cast<std::ptrdiff_t>(items[i].index));
       ++removed;
     }
   }
@@ -425,10 +384,6 @@ ToSlices(const std::vector<BoneSection> & sections, const ContourStack & frame)
     ContourSlice slice;
     slice.origin = frame.FromPlane(Vector2::Zero(), section.height);
     const auto add = [&](const Polygon & polygon, int layer, int region) {
-      if (polygon.empty())
-      {
-        return;
-      }
       Contour contour;
       contour.layer = layer;
       contour.region = region;
@@ -446,8 +401,14 @@ ToSlices(const std::vector<BoneSection> & sections, const ContourStack & frame)
       {
         add(hole, 0, Region::Outside);
       }
-      add(piece.endosteal, 1, Region::Spongy);
-      add(piece.medullary, 2, Region::Medullary);
+      for (const Polygon & endosteal : piece.endosteal)
+      {
+        add(endosteal, 1, Region::Spongy);
+      }
+      for (const Polygon & medullary : piece.medullary)
+      {
+        add(medullary, 2, Region::Medullary);
+      }
     }
     slices.push_back(std::move(slice));
   }

@@ -195,28 +195,48 @@ EvenSections(double first, double step, double last, double slack)
   return sections;
 }
 
-// Inner layers come from a grid, a little off their least distance.
+// Moves `inner` away from `fixed`, unless it would then cross something.
 void
-KeepLayersApart(BoneSection & section, double distance)
+KeepApart(Polygon & inner, const Polygon & fixed, bool inside, double distance)
 {
-  for (BonePiece & piece : section.pieces)
+  const Polygon before = inner;
+  MoveAway(inner, fixed, inside, distance);
+  if (AnyCrossing({ inner, fixed }))
   {
-    const Polygon endosteal = piece.endosteal;
-    const Polygon medullary = piece.medullary;
-    if (!endosteal.empty())
+    inner = before;
+  }
+}
+
+// Inner layers come from a grid, a little off their least distance. What cannot be had without crossings is left.
+void
+KeepLayersApart(BonePiece & piece, double distance)
+{
+  const BonePiece before = piece;
+  for (Polygon & endosteal : piece.endosteal)
+  {
+    KeepApart(endosteal, piece.outer, true, distance);
+    for (const Polygon & hole : piece.holes)
     {
-      MoveAway(piece.endosteal, piece.outer, true, distance);
+      KeepApart(endosteal, hole, false, distance);
     }
-    if (!medullary.empty())
+  }
+  for (Polygon & medullary : piece.medullary)
+  {
+    for (const Polygon & endosteal : piece.endosteal)
     {
-      MoveAway(piece.medullary, piece.endosteal, true, distance);
+      if (PointInPolygon(medullary.front(), endosteal))
+      {
+        KeepApart(medullary, endosteal, true, distance);
+      }
     }
-    if (AnyCrossing(LoopsOf({ 0.0, { { piece.outer, piece.holes, {}, {} }, { piece.endosteal, {}, {}, {} } } })) ||
-        (!medullary.empty() && AnyCrossing({ piece.endosteal, piece.medullary })))
-    {
-      piece.endosteal = endosteal;
-      piece.medullary = medullary;
-    }
+  }
+  std::vector<Polygon> loops = piece.holes;
+  loops.push_back(piece.outer);
+  loops.insert(loops.end(), piece.endosteal.begin(), piece.endosteal.end());
+  loops.insert(loops.end(), piece.medullary.begin(), piece.medullary.end());
+  if (AnyCrossing(loops))
+  {
+    piece = before;
   }
 }
 } // namespace
@@ -367,7 +387,12 @@ FinishSections(std::vector<BoneSection> &   sections,
     report.slices[k].height = sections[k].height;
   }
   lines = FindInnerLayers(sections, planes, pixel, parameters.layers, parallel);
-  parallel(sections.size(), [&](std::size_t k) { KeepLayersApart(sections[k], parameters.layers.minimumDistance); });
+  parallel(sections.size(), [&](std::size_t k) {
+    for (BonePiece & piece : sections[k].pieces)
+    {
+      KeepLayersApart(piece, parameters.layers.minimumDistance);
+    }
+  });
   report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
 }
 } // namespace bone
