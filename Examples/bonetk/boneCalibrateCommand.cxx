@@ -4,9 +4,9 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 
-#include "boneDensityCalibration.h"
+#include "boneDensityCalibrationFilter.h"
+#include "boneImageIO.h"
 #include "boneMeshIO.h"
-#include "boneReferenceRegion.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,14 +22,14 @@ using Json = nlohmann::json;
 
 struct Options
 {
-  std::string         mesh;
-  std::vector<double> line;
-  std::string         to;
-  std::string         references;
-  std::string         ct;
-  std::string         labels;
-  std::string         law;
-  std::string         output;
+  std::string              mesh;
+  std::vector<double>      line;
+  std::string              to;
+  std::string              references;
+  std::string              ct;
+  std::string              labels;
+  std::vector<std::string> laws;
+  std::string              output;
 };
 
 Vector3
@@ -39,89 +39,35 @@ Point(const Json & json)
   return { values[0], values[1], values[2] };
 }
 
-/** Images that references are measured in; read when first needed. */
-struct Images
+DensityReference
+ReadReference(const Json & json)
 {
-  const Options &     options;
-  CTImage::Pointer    ct;
-  LabelImage::Pointer labels;
-
-  const CTImage &
-  CT()
-  {
-    if (options.ct.empty())
-    {
-      throw UsageError("--ct is required: a reference is to be measured");
-    }
-    ct = ct.IsNull() ? ReadCT(options.ct) : ct;
-    return *ct;
-  }
-
-  const LabelImage &
-  Labels()
-  {
-    if (options.labels.empty())
-    {
-      throw UsageError("--labels is required: a reference is named by its label");
-    }
-    labels = labels.IsNull() ? ReadLabels(options.labels) : labels;
-    return *labels;
-  }
-};
-
-ReferenceStatistics
-MeasureLabel(const CTImage & ct, const LabelImage & labels, int label)
-{
-  const std::size_t count = ct.GetBufferedRegion().GetNumberOfPixels();
-  if (labels.GetBufferedRegion() != ct.GetBufferedRegion())
-  {
-    throw std::runtime_error("The label map's grid is not the CT's.");
-  }
-  ReferenceStatistics statistics;
-  for (std::size_t v = 0; v < count; ++v)
-  {
-    if (labels.GetBufferPointer()[v] == label)
-    {
-      ++statistics.voxels;
-      statistics.mean += ct.GetBufferPointer()[v];
-    }
-  }
-  statistics.mean /= statistics.voxels > 0 ? static_cast<double>(statistics.voxels) : 1.0;
-  return statistics;
-}
-
-CalibrationReference
-ReadReference(const Json & json, Images & images)
-{
-  CalibrationReference reference;
+  DensityReference reference;
   reference.name = json.at("name").get<std::string>();
   reference.density = json.at("density").get<double>();
   if (json.contains("value"))
   {
-    reference.value = json.at("value").get<double>();
-    return reference;
+    reference.measure = json.at("value").get<double>();
   }
-  const ReferenceStatistics statistics =
-    json.contains("label")
-      ? MeasureLabel(images.CT(), images.Labels(), json.at("label").get<int>())
-      : MeasureReference(images.CT(),
-                         { Point(json.at("from")), Point(json.at("to")), json.at("radius").get<double>() });
-  if (statistics.voxels == 0)
+  else if (json.contains("label"))
   {
-    throw std::runtime_error("Reference '" + reference.name + "' holds no voxel of the CT.");
+    reference.measure = json.at("label").get<int>();
   }
-  reference.value = statistics.mean;
+  else
+  {
+    reference.measure =
+      ReferenceRegion{ Point(json.at("from")), Point(json.at("to")), json.at("radius").get<double>() };
+  }
   return reference;
 }
 
-Calibration
-CalibrateFromFile(const Options & options, DensityQuantity to)
+std::vector<DensityReference>
+ReadReferences(const std::string & path)
 {
-  Images                            images{ options, nullptr, nullptr };
-  std::vector<CalibrationReference> references;
+  std::vector<DensityReference> references;
   try
   {
-    std::ifstream file(options.references);
+    std::ifstream file(path);
     if (!file)
     {
       throw std::runtime_error("cannot be read");
@@ -129,18 +75,41 @@ CalibrateFromFile(const Options & options, DensityQuantity to)
     const Json json = Json::parse(file);
     for (const Json & item : json.at("references"))
     {
-      references.push_back(ReadReference(item, images));
+      references.push_back(ReadReference(item));
     }
-  }
-  catch (const UsageError &)
-  {
-    throw;
   }
   catch (const std::exception & error)
   {
-    throw std::runtime_error(options.references + ": " + error.what());
+    throw std::runtime_error(path + ": " + error.what());
   }
-  return CalibrateDensity(references, to);
+  return references;
+}
+
+/** Gives the filter the references and the images that these are measured in. */
+void
+UseReferences(const Options & options, DensityQuantity to, DensityCalibrationFilter<CTImage> & filter)
+{
+  const auto references = ReadReferences(options.references);
+  for (const DensityReference & reference : references)
+  {
+    if (!std::holds_alternative<double>(reference.measure) && options.ct.empty())
+    {
+      throw UsageError("--ct is required: a reference is to be measured");
+    }
+    if (std::holds_alternative<int>(reference.measure) && options.labels.empty())
+    {
+      throw UsageError("--labels is required: a reference is named by its label");
+    }
+  }
+  filter.SetReferences(references, to);
+  if (!options.ct.empty())
+  {
+    filter.SetImage(ReadCT(options.ct));
+  }
+  if (!options.labels.empty())
+  {
+    filter.SetLabels(ReadLabels(options.labels));
+  }
 }
 
 std::string
@@ -153,16 +122,26 @@ DescribeLaw(const DensityLaw & law)
 }
 
 void
-Apply(MeshArrays & mesh, const DensityLaw & law, Session & session)
+Report(const DensityCalibrationFilter<CTImage> & filter, Session & session)
 {
-  const double outside = ConvertDensity(mesh, law);
-  session.Print(DescribeLaw(law));
-  if (outside > 0.01)
+  if (const auto & calibration = filter.GetCalibration())
   {
     std::ostringstream text;
-    text << std::setprecision(3) << 100 * outside << " % of the volume lies outside the range " << law.low << " to "
-         << law.high << ' ' << DensityQuantityName(law.from) << " of the law.";
-    session.Warn(text.str());
+    text << std::setprecision(4) << "references: " << calibration->residuals.size() << ", root mean square residual "
+         << calibration->rms << ' ' << DensityQuantityName(calibration->law.to) << ", correlation "
+         << calibration->correlation << '\n';
+    session.Print(text.str());
+  }
+  for (const auto & [law, outside] : filter.GetSteps())
+  {
+    session.Print(DescribeLaw(law));
+    if (outside > 0.01)
+    {
+      std::ostringstream text;
+      text << std::setprecision(3) << 100 * outside << " % of the volume lies outside the range " << law.low << " to "
+           << law.high << ' ' << DensityQuantityName(law.from) << " of the law.";
+      session.Warn(text.str());
+    }
   }
 }
 
@@ -170,45 +149,28 @@ void
 Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
-  if (options.line.empty() && options.references.empty() && options.law.empty())
+  if (options.line.empty() && options.references.empty() && options.laws.empty())
   {
     throw UsageError("--line, --references or --law is required");
   }
-  MeshArrays mesh = ReadMeshArrays(options.mesh);
-  if (!options.line.empty() || !options.references.empty())
+  if (options.to.empty() && !(options.line.empty() && options.references.empty()))
   {
-    if (options.to.empty())
-    {
-      throw UsageError("--to is required: it says what the line leads to");
-    }
-    const DensityQuantity to = ParseDensityQuantity(options.to);
-    DensityLaw            law;
-    if (options.references.empty())
-    {
-      law.to = to;
-      law.intercept = options.line[0];
-      law.slope = options.line[1];
-      law.low = -std::numeric_limits<double>::infinity();
-      law.high = -law.low;
-    }
-    else
-    {
-      const Calibration calibration = CalibrateFromFile(options, to);
-      law = calibration.law;
-      std::ostringstream text;
-      text << std::setprecision(4) << "references: " << calibration.residuals.size() << ", root mean square residual "
-           << calibration.rms << ' ' << DensityQuantityName(to) << ", correlation " << calibration.correlation << '\n';
-      session.Print(text.str());
-    }
-    Apply(mesh, law, session);
+    throw UsageError("--to is required: it says what the line leads to");
   }
-  if (!options.law.empty())
+  auto filter = DensityCalibrationFilter<CTImage>::New();
+  filter->SetInput(ReadDensityMesh(options.mesh));
+  if (!options.line.empty())
   {
-    Apply(mesh, FindDensityLaw(options.law), session);
+    filter->SetLine(options.line[0], options.line[1], ParseDensityQuantity(options.to));
   }
-  auto output = DensityMesh<double>::New();
-  output->SetArrays(std::move(mesh));
-  WriteDensityMesh(output.GetPointer(), options.output);
+  else if (!options.references.empty())
+  {
+    UseReferences(options, ParseDensityQuantity(options.to), *filter);
+  }
+  filter->SetLaws(options.laws);
+  filter->Update();
+  Report(*filter, session);
+  WriteDensityMesh(filter->GetOutput(), options.output);
 }
 } // namespace
 
@@ -232,10 +194,10 @@ AddCalibrateCommand(CLI::App & app, Action & action)
   command->add_option("--ct", options->ct, "CT that rods and tissues are measured in");
   command->add_option("--labels", options->labels, "Label map on the CT's grid for references named by a label");
   command
-    ->add_option(
-      "--law",
-      options->law,
-      "Published law, applied last: les1994 (k2hpo4 to ash), keyak2005 (ha to ash), schileo2008 (ash to apparent)")
+    ->add_option("--law",
+                 options->laws,
+                 "Published laws, applied last, in order: les1994 (k2hpo4 to ash), keyak2005 (ha to ash), schileo2008 "
+                 "(ash to apparent)")
     ->check(CLI::IsMember({ "les1994", "keyak2005", "schileo2008" }).description(""));
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });

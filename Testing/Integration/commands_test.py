@@ -110,6 +110,8 @@ class Commands(TestCase):
         self.refuse("calibrate", "ash.vtu", "--law", "les1994", "-o", "x.vtu", says="K2HPO4")
         self.refuse("calibrate", "d.vtu", "--references", "r.json", "--to", "ha", "-o", "x.vtu", code=2)
         self.refuse("calibrate", "d.vtu", "-o", "x.vtu", code=2)
+        self.succeed("calibrate", "d.vtu", "--line", -4, 0.8, "--to", "k2hpo4", "--law", "les1994", "schileo2008", "-o", "k.vtu")
+        self.assertIn("apparent g/cm3", self.succeed("info", "k.vtu")[0])
 
         self.succeed("voxels", "d.vtu", "--like", "ct.nii.gz", "-o", "v.nii.gz")
         model, truth = (numpy.asarray(nibabel.load(name).dataobj) for name in ("v.nii.gz", "ct.nii.gz"))

@@ -18,6 +18,12 @@ struct ReferenceRegion
   Vector3 from{ Vector3::Zero() };
   Vector3 to{ Vector3::Zero() };
   double  radius{ 0.0 };
+
+  bool
+  operator==(const ReferenceRegion & other) const
+  {
+    return from == other.from && to == other.to && radius == other.radius;
+  }
 };
 
 /** The voxels of a region. */
@@ -66,6 +72,29 @@ MeasureReference(const TImage & image, const ReferenceRegion & region)
         statistics.mean += rest / static_cast<double>(statistics.voxels);
         squares += rest * (static_cast<double>(buffer[at]) - statistics.mean);
       }
+    }
+  }
+  statistics.standardDeviation =
+    statistics.voxels > 0 ? std::sqrt(squares / static_cast<double>(statistics.voxels)) : 0.0;
+  return statistics;
+}
+
+/** The same for the voxels of a label. \pre The label map has the image's buffered region. */
+template <typename TImage, typename TLabels>
+ReferenceStatistics
+MeasureReference(const TImage & image, const TLabels & labels, int label)
+{
+  ReferenceStatistics statistics;
+  double              squares = 0;
+  const std::size_t   count = image.GetBufferedRegion().GetNumberOfPixels();
+  for (std::size_t v = 0; v < count; ++v)
+  {
+    if (labels.GetBufferPointer()[v] == label)
+    {
+      const double value = image.GetBufferPointer()[v], rest = value - statistics.mean; // Welford
+      ++statistics.voxels;
+      statistics.mean += rest / static_cast<double>(statistics.voxels);
+      squares += rest * (value - statistics.mean);
     }
   }
   statistics.standardDeviation =

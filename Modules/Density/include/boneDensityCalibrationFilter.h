@@ -1,0 +1,158 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDensityCalibrationFilter_h
+#define boneDensityCalibrationFilter_h
+
+#include "boneDensityCalibration.h"
+#include "boneDensityMesh.h"
+#include "boneReferenceRegion.h"
+
+#include <itkImage.h>
+#include <itkProcessObject.h>
+
+#include <optional>
+#include <variant>
+
+namespace bone
+{
+/** A material of known density, and where its value comes from. */
+struct DensityReference
+{
+  /** A value in HU as it is known, a rod or ball in the image, or a label of the label map: rods of a phantom, or
+   * tissues of the patient. */
+  using Measure = std::variant<double, ReferenceRegion, int>;
+
+  std::string name;
+  double      density{ 0.0 }; ///< known, in the unit that the references lead to
+  Measure     measure;
+
+  bool
+  operator==(const DensityReference & other) const
+  {
+    return name == other.name && density == other.density && measure == other.measure;
+  }
+};
+
+/** \class DensityCalibrationFilter
+ * \brief Turns a density model in Hounsfield units into one in mineral, ash or apparent density.
+ *
+ * Inputs: the mesh (primary, "Mesh"), with a density; "Image", optional: the CT in which references are measured as
+ * rods or labels; "Labels", optional: a label map on its grid. Output: the mesh with its density converted.
+ *
+ * First comes a line, density = intercept + slope HU: the one that was given (SetLine), or the least-squares line
+ * through references (SetReferences); then published laws by name, in order (SetLaws, \ref PublishedDensityLaws). Any
+ * of the two may be left out. All are lines, which take a Bernstein polynomial to one of the same degree, exactly; so a
+ * CT that was calibrated before the fit gives the same model.
+ *
+ * Every mesh carries its quantity and unit. What leads from another quantity than the mesh's is an error, not a wrong
+ * number.
+ *
+ * Throws itk::ExceptionObject without an input mesh or density, where there is nothing to apply, where quantities do
+ * not match, a reference holds no voxel or needs an input that is missing, or references make no rising line. */
+template <typename TImage = itk::Image<float, 3>, typename TMesh = DensityMesh<double>>
+class DensityCalibrationFilter : public itk::ProcessObject
+{
+public:
+  ITK_DISALLOW_COPY_AND_MOVE(DensityCalibrationFilter);
+  using Self = DensityCalibrationFilter;
+  using Superclass = itk::ProcessObject;
+  using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
+  itkNewMacro(Self);
+  itkTypeMacro(DensityCalibrationFilter, itk::ProcessObject);
+
+  using MeshType = TMesh;
+  using ImageType = TImage;
+  using LabelImageType = itk::Image<short, 3>;
+
+  using Superclass::SetInput;
+  void
+  SetInput(const TMesh * mesh);
+  const TMesh *
+  GetInput() const;
+  itkSetInputMacro(Image, TImage);
+  itkGetInputMacro(Image, TImage);
+  itkSetInputMacro(Labels, LabelImageType);
+  itkGetInputMacro(Labels, LabelImageType);
+  TMesh *
+  GetOutput();
+  const TMesh *
+  GetOutput() const;
+
+  /** density = intercept + slope HU, in the unit of the quantity. Takes the place of references. */
+  void
+  SetLine(double intercept, double slope, DensityQuantity to);
+  /** References, through which the line is laid; none: no line. Takes the place of a given line. */
+  void
+  SetReferences(const std::vector<DensityReference> & references, DensityQuantity to);
+  const std::vector<DensityReference> &
+  GetReferences() const
+  {
+    return m_References;
+  }
+  /** Names of published laws, applied in this order after the line. */
+  void
+  SetLaws(const std::vector<std::string> & names);
+  const std::vector<std::string> &
+  GetLaws() const
+  {
+    return m_Laws;
+  }
+
+  /** \name Results of the last run
+   * \{ */
+  /** The line through the references, with residuals; empty where there were none. */
+  const std::optional<Calibration> &
+  GetCalibration() const
+  {
+    return m_Calibration;
+  }
+  /** A law that was applied, and the share of the volume whose mean density lay outside its range. */
+  struct Step
+  {
+    DensityLaw law;
+    double     outside;
+  };
+  const std::vector<Step> &
+  GetSteps() const
+  {
+    return m_Steps;
+  }
+  /** \} */
+
+  using Superclass::MakeOutput;
+  itk::DataObject::Pointer
+  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
+
+protected:
+  DensityCalibrationFilter();
+  ~DensityCalibrationFilter() override = default;
+
+  void
+  VerifyPreconditions() ITKv5_CONST override;
+  void
+  GenerateData() override;
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+
+private:
+  CalibrationReference
+  Measure(const DensityReference & reference) const;
+
+  std::optional<DensityLaw>     m_Line;
+  std::vector<DensityReference> m_References;
+  DensityQuantity               m_ReferenceQuantity{ DensityQuantity::Unknown };
+  std::vector<std::string>      m_Laws;
+  std::optional<Calibration>    m_Calibration;
+  std::vector<Step>             m_Steps;
+};
+
+extern template class DensityCalibrationFilter<itk::Image<float, 3>, DensityMesh<double>>;
+} // namespace bone
+
+#ifndef ITK_MANUAL_INSTANTIATION
+#include "boneDensityCalibrationFilter.hxx"
+#endif
+
+#endif
