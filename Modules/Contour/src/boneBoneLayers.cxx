@@ -301,7 +301,8 @@ LayerFinder::GrowApart(const std::vector<Polygon> & cores, const PlaneGrid & gri
 {
   const auto              radius = static_cast<float>(m_Parameters.smallestRadius);
   const auto              gap = static_cast<float>(m_Parameters.minimumDistance);
-  const double            limit = 2.0 * (radius + gap) + 2.0 * m_Spacing.maxCoeff();
+  const double            reach = cores.size() > 1 ? 2.0 * (radius + gap) : radius; // where others matter, further
+  const double            limit = reach + 2.0 * m_Spacing.maxCoeff();
   std::vector<PlaneField> inside;
   for (const Polygon & core : cores)
   {
@@ -313,16 +314,16 @@ LayerFinder::GrowApart(const std::vector<Polygon> & cores, const PlaneGrid & gri
     PlaneField grown = inside[i];
     for (std::size_t n = 0; n < grown.values.size(); ++n)
     {
-      grown.values[n] += radius;
       for (std::size_t j = 0; j < cores.size(); ++j)
       {
         if (j != i)
         {
-          grown.values[n] = std::min(grown.values[n], 0.5F * (inside[i].values[n] - inside[j].values[n] - gap));
+          const float parted = 0.5F * (inside[i].values[n] - inside[j].values[n] - gap) - radius;
+          grown.values[n] = std::min(grown.values[n], parted);
         }
       }
     }
-    for (Polygon & loop : OutlinesOf(grown, 0.0))
+    for (Polygon & loop : OutlinesOf(grown, -m_Parameters.smallestRadius))
     {
       if (SignedArea(loop) >= 0.4 * m_Parameters.smallestArea)
       {
