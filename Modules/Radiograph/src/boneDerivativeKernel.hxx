@@ -1,25 +1,10 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Derivatives of the projection and its adjoint, compiled like boneProjectionKernel.hxx, which see for the cell's
-// frame.
-//
-// The rays of a row (one eta) lie in a plane with coordinates X = (1 + kappa z) xi and z, where a density of degree N
-// is a polynomial of that degree in two variables: for any density, the integral along a ray is a sum over the moments
-//   I_ak = integral of X^a z^k dz,  a + k <= N,
-// times coefficients that are polynomials in eta ("levels" below). The moments serve every density mode.
-//
-// A displacement w of the vertices moves the cell's points by an affine field. Across the ray that is
-// u_X = w_X - kappa xi w_z and u_Y = w_Y - kappa eta w_z, both affine in z along a ray; along it, the cell is stretched
-// by dw_z/dz. With
-//   G_X(phi) = - integral of (d rho / dX) phi dz + rho (1 + kappa z) phi (dv/dxi of the face's plane), exit less entry,
-// and G_Y alike, the cell's integral I changes by the sum of G(1), G(z) and I times the field's parts. At one eta these
-// are polynomials in xi, which makes nine functions of the ray for all shape modes, again with coefficients in eta.
-// Rigid motion needs I, G(1) and G(s - middle) alone, which are added up and combined pixel by pixel.
-//
-// The adjoint sums the same functions over the pixels of each row, then by levels over the rows.
+// Derivatives of the projection and its adjoint: sums of boneRayTerms.hxx, which see, over the terms of a pixel for all
+// modes at once, and over the pixels for each term.
 
-#include "boneModeTables.hxx"
+#include "boneRayTerms.hxx"
 
 namespace bone
 {
@@ -27,360 +12,239 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-/** The density of a cell and its rates along X and Y, in this order, in a group's table. */
-template <int N>
-struct DensityTable
+/** One number of each of some modes. */
+typedef float Modes __attribute__((vector_size(modeLanes * sizeof(float))));
+
+/** A block of modes in one cell, as factors of the terms. */
+template <int TCount>
+struct ModeTable
 {
-  static constexpr int lower = N > 0 ? PlaneCount(N - 1) : 0;
-  static constexpr int count = PlaneCount(N) + 2 * lower;
-  static constexpr int rateX = PlaneCount(N);
-  static constexpr int rateY = rateX + lower;
-
-  Group levels[N + 1][count];
-
-  void
-  Set(const CellGroup & group, const GroupFrame & frame)
-  {
-    Group control[CoefficientCount(N)];
-    LoadControl<N>(group.coefficients, frame.halfDepth * group.scale, frame.halfDepth * group.offset, control);
-    Monomials<N> monomials;
-    SetMonomials<N>(control, frame.mu, monomials);
-    SetLevels<N>(monomials, frame.kappa, levels[0], count);
-    if constexpr (N > 0)
-    {
-      Monomials<N - 1> x, y;
-      for (int a = 0; a < N; ++a)
-      {
-        for (int b = 0; a + b < N; ++b)
-        {
-          for (int k = 0; a + b + k < N; ++k)
-          {
-            x.q[a][b][k] = (a + 1.0) * monomials.q[a + 1][b][k];
-            y.q[a][b][k] = (b + 1.0) * monomials.q[a][b + 1][k];
-          }
-        }
-      }
-      SetLevels<N - 1>(x, frame.kappa, levels[0] + rateX, count);
-      SetLevels<N - 1>(y, frame.kappa, levels[0] + rateY, count);
-      for (int i = rateX; i < count; ++i)
-      {
-        levels[N][i] = Group{};
-      }
-    }
-  }
+  Modes of[TCount];
 };
 
-/** What one cell is along the rays of a row. */
-template <typename TReal>
-struct RayStarts
-{
-  TReal depth[4], depthStep[4]; ///< of the planes, as in Frame
-  TReal perXi[4], perEta[4];    ///< change of these depths
-  TReal xi, xiStep;
-  TReal kappa;
-  int   fronts;
-};
-
-/** All that the modes need of eight rays and a cell; see the top. */
-template <typename TReal, int N>
-struct RayFunctions
-{
-  using Lanes = typename Vector<TReal>::Type;
-  Lanes value;
-  Lanes moment[PlaneCount(N)];
-  Lanes gx, gxz, gy, gyz; ///< G_X(1), G_X(z), G_Y(1), G_Y(z)
-  Lanes shape[shapeFunctions];
-};
-
-/** What a ray meets where it enters or leaves. */
-template <typename TLanes>
-struct RayEnd
-{
-  TLanes depth;
-  TLanes perXi, perEta; ///< of the plane that is met
-  TLanes magnification; ///< 1 + kappa z
-  TLanes z;
-};
-
-template <typename TReal, typename TLanes>
+/** Rows of eight become columns. */
 inline void
-FindEnds(const RayStarts<TReal> & rays, const TLanes & index, RayEnd<TLanes> & entry, RayEnd<TLanes> & exit)
+TransposeBlock(const Batch (&from)[lanes], Batch (&to)[lanes])
 {
-  const auto meet = [&](int plane, RayEnd<TLanes> & end) {
-    end.depth = rays.depth[plane] + rays.depthStep[plane] * index;
-    end.perXi = TLanes{} + rays.perXi[plane];
-    end.perEta = TLanes{} + rays.perEta[plane];
-  };
-  meet(0, entry);
-  meet(3, exit);
-  for (int i = 1; i < 3; ++i)
+  Batch low[lanes], high[lanes];
+  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[0]), low);
+  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[groupSize]), high);
+  // Of low: column k in its first half, column k + 4 in its second, of rows 0..3; high: of rows 4..7.
+  for (int k = 0; k < groupSize; ++k)
   {
-    RayEnd<TLanes> other;
-    meet(i, other);
-    RayEnd<TLanes> & end = i < rays.fronts ? entry : exit;
-    const auto       inner = i < rays.fronts ? other.depth < end.depth : other.depth > end.depth;
-    end.depth = inner ? other.depth : end.depth;
-    end.perXi = inner ? other.perXi : end.perXi;
-    end.perEta = inner ? other.perEta : end.perEta;
+    to[k] = __builtin_shufflevector(low[k], high[k], 0, 1, 2, 3, 8, 9, 10, 11);
+    to[k + groupSize] = __builtin_shufflevector(low[k], high[k], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 
-/** `density` is DensityTable's values for the row; rays at `index`, those below `end`. */
-template <typename TReal, int N>
+/** Numbers in single precision, then zeros. */
+template <int TCount>
+inline __attribute__((always_inline)) Batch
+LoadRounded(const double * from)
+{
+  typedef double Wide __attribute__((vector_size(lanes * sizeof(double))));
+  Wide           value{};
+  __builtin_memcpy(&value, from, TCount * sizeof(double));
+  return __builtin_convertvector(value, Batch);
+}
+
+/** Eight modes of a member, coefficients [start, start + TCount): to half of the table's blocks. */
+template <int TCount>
 inline __attribute__((always_inline)) void
-SetFunctions(const RayStarts<TReal> &             rays,
-             const TReal *                        density,
-             const typename Vector<TReal>::Type & index,
-             TReal                                end,
-             bool                                 withShape,
-             RayFunctions<TReal, N> &             functions)
+SetTablePart(const double * const (&from)[lanes], int start, Modes * to, int part)
 {
-  using Lanes = typename Vector<TReal>::Type;
-  using Basis = PlaneBasis<N>;
-  constexpr int points = N / 2 + 1;
-  const Lanes   none{};
-
-  RayEnd<Lanes> entry, exit;
-  FindEnds(rays, index, entry, exit);
-  const auto hit = (entry.depth > exit.depth) & (index < end);
-  entry.depth = hit ? entry.depth : none;
-  exit.depth = hit ? exit.depth : none;
-  const Lanes a = 1 + rays.kappa * entry.depth, b = 1 + rays.kappa * exit.depth;
-  const Lanes inverse = 1 / (a * b);
-  const Lanes length = (entry.depth - exit.depth) * inverse;
-  entry.magnification = b * inverse;
-  exit.magnification = a * inverse;
-  entry.z = -entry.depth * entry.magnification;
-  exit.z = -exit.depth * exit.magnification;
-
-  const Lanes xi = rays.xi + rays.xiStep * index;
-  const Lanes half = TReal(0.5) * length, middle = entry.z + half;
-  for (int g = 0; g < points; ++g)
+  Batch rows[lanes], columns[lanes];
+  for (int m = 0; m < lanes; ++m)
   {
-    const Lanes z = middle + TReal(Gauss<points>::x[g]) * half;
-    Lanes       products[Basis::count];
-    Basis::Products(TReal(Gauss<points>::w[g]) * length, (1 + rays.kappa * z) * xi, z, products);
-    Repeat<Basis::count>(
-      [&](int q) { functions.moment[q] = g == 0 ? products[q] : functions.moment[q] + products[q]; });
+    rows[m] = LoadRounded<TCount>(from[m] + start);
   }
-  Lanes value = none;
-  Repeat<Basis::count>([&](int q) { value += density[q] * functions.moment[q]; });
-  functions.value = value;
-  if (!withShape)
+  TransposeBlock(rows, columns);
+  for (int k = 0; k < TCount; ++k)
   {
-    functions.gx = functions.gxz = functions.gy = functions.gyz = none;
-    Repeat<shapeFunctions>([&](int q) { functions.shape[q] = none; });
-    return;
+    __builtin_memcpy(reinterpret_cast<float *>(to + start + k) + part, columns + k, sizeof(Batch));
   }
-
-  Lanes gx = none, gxz = none, gy = none, gyz = none;
-  if constexpr (N > 0)
-  {
-    using Table = DensityTable<N>;
-    for (int i = 0; i < N; ++i)
-    {
-      for (int k = 0; k < N - i; ++k)
-      {
-        const TReal x = density[Table::rateX + PlaneBasis<N - 1>::At(i, k)];
-        const TReal y = density[Table::rateY + PlaneBasis<N - 1>::At(i, k)];
-        gx -= x * functions.moment[Basis::At(i, k)];
-        gxz -= x * functions.moment[Basis::At(i, k + 1)];
-        gy -= y * functions.moment[Basis::At(i, k)];
-        gyz -= y * functions.moment[Basis::At(i, k + 1)];
-      }
-    }
-  }
-  Lanes in, out;
-  Basis::Value(density, entry.magnification * xi, entry.z, in);
-  Basis::Value(density, exit.magnification * xi, exit.z, out);
-  in = hit ? in * entry.magnification : none;
-  out = hit ? out * exit.magnification : none;
-  const Lanes inX = in * entry.perXi, inY = in * entry.perEta;
-  const Lanes outX = out * exit.perXi, outY = out * exit.perEta;
-  gx += outX - inX;
-  gy += outY - inY;
-  gxz += outX * exit.z - inX * entry.z;
-  gyz += outY * exit.z - inY * entry.z;
-  functions.gx = gx;
-  functions.gxz = gxz;
-  functions.gy = gy;
-  functions.gyz = gyz;
-  functions.shape[0] = gx;
-  functions.shape[1] = xi * gx;
-  functions.shape[2] = gxz;
-  functions.shape[3] = xi * gxz;
-  functions.shape[4] = xi * (functions.shape[1] + rays.kappa * functions.shape[3] - value);
-  functions.shape[5] = gy;
-  functions.shape[6] = gyz;
-  functions.shape[7] = xi * (gy + rays.kappa * gyz);
-  functions.shape[8] = value;
 }
 
-/** Calls consumer.StartRow(eta), consumer.Take(row, column, functions) and consumer.EndRow(eta) for all rays of a cell.
- */
-template <typename TReal, int N, typename TConsumer>
+/** Block of density modes (the density itself being the first) of a member. */
+template <int N>
 inline void
-ForEachRay(const Frame & frame, const DensityTable<N> & density, int member, bool withShape, TConsumer & consumer)
+SetDensityTable(const CellGroup &                group,
+                const Derivatives &              derivatives,
+                int                              member,
+                double                           halfDepth,
+                int                              block,
+                ModeTable<CoefficientCount(N)> & table)
 {
-  using Lanes = typename Vector<TReal>::Type;
-  TReal                  memory[RowTableSize(DensityTable<N>::count, N + 1)];
-  RowTable<TReal, N + 1> table(memory, DensityTable<N>::count);
-  table.Set(density.levels[0], member);
-  RayStarts<TReal> rays;
-  rays.kappa = static_cast<TReal>(frame.kappa);
-  rays.fronts = frame.fronts;
-  for (int i = 0; i < 4; ++i)
+  constexpr int           count = CoefficientCount(N), whole = count / lanes, left = count % lanes;
+  static constexpr double none[count] = {};
+  for (int part = 0; part < modeLanes; part += lanes)
   {
-    rays.depthStep[i] = static_cast<TReal>(frame.depth[i][1]);
-    rays.perXi[i] = static_cast<TReal>(frame.depth[i][1] * frame.halfWidth);
-    rays.perEta[i] = static_cast<TReal>(frame.depth[i][2] * frame.halfHeight);
-  }
-  const double xiPerColumn = 1.0 / frame.halfWidth, etaPerRow = 1.0 / frame.halfHeight;
-  rays.xiStep = static_cast<TReal>(xiPerColumn);
-  const Lanes index = { 0, 1, 2, 3, 4, 5, 6, 7 };
-  for (int block = frame.firstRow; block < frame.endRow; block += lanes)
-  {
-    RowRuns runs;
-    SetRowRuns(frame, block, runs);
-    for (int j = 0; j < lanes && block + j < frame.endRow; ++j)
+    const double * from[lanes];
+    for (int m = 0; m < lanes; ++m)
     {
-      if (runs.count[j] <= 0)
-      {
-        continue;
-      }
-      const double dr = block + j - frame.r0, dc = runs.first[j] - frame.c0;
-      for (int i = 0; i < 4; ++i)
-      {
-        const double(&depth)[3] = frame.depth[i];
-        rays.depth[i] = static_cast<TReal>(depth[0] + depth[1] * dc + depth[2] * dr);
-      }
-      rays.xi = static_cast<TReal>(dc * xiPerColumn);
-      const auto eta = static_cast<TReal>(dr * etaPerRow);
-      table.At(eta);
-      consumer.StartRow(eta);
-      for (int i = 0; i < runs.count[j]; i += lanes)
-      {
-        RayFunctions<TReal, N> functions;
-        SetFunctions<TReal, N>(
-          rays, table.Values(), index + static_cast<TReal>(i), static_cast<TReal>(runs.count[j]), withShape, functions);
-        consumer.Take(block + j, runs.first[j] + i, functions);
-      }
-      consumer.EndRow(eta);
+      const int mode = block * modeLanes + part + m;
+      from[m] = mode < derivatives.densityModes ? derivatives.density[mode] + derivatives.coefficient[member] : none;
     }
+    RepeatLow<N, whole>([&](int piece)
+                          __attribute__((always_inline)) { SetTablePart<lanes>(from, piece * lanes, table.of, part); });
+    if constexpr (left > 0)
+    {
+      SetTablePart<left>(from, whole * lanes, table.of, part);
+    }
+  }
+  const auto scale = static_cast<float>(halfDepth * group.scale);
+  Modes      offset{};
+  offset[0] = block == 0 ? static_cast<float>(halfDepth * group.offset) : 0.0f;
+  RepeatLow<N, count>([&](int p) __attribute__((always_inline)) {
+    table.of[p] = static_cast<float>(basisFactors<N>.of[p]) * (scale * table.of[p] + offset);
+  });
+}
+
+/** Block of displacements of a member's vertices. */
+inline void
+SetVertexTable(const Derivatives & derivatives, int member, int block, ModeTable<vertexTerms> & table)
+{
+  const int stride = derivatives.vertexBlocks * modeLanes;
+  Repeat<vertexTerms>([&](int q) __attribute__((always_inline)) {
+    const float * const from = derivatives.displacement[member][q / 3] + q % 3 * stride + block * modeLanes;
+    __builtin_memcpy(table.of + q, from, sizeof(Modes));
+  });
+}
+
+/** Terms of the listed pixels, [term][pixel]. */
+template <int TCount>
+struct alignas(64) TermList
+{
+  float of[TCount][listSize];
+};
+
+/** Adds a block of modes at the listed pixels, which are `plane` numbers apart. */
+template <int TCount>
+inline __attribute__((always_inline)) void
+AddBlock(const ModeTable<TCount> & modes,
+         const TermList<TCount> &  terms,
+         const std::int32_t *      at,
+         int                       count,
+         float *                   out,
+         std::ptrdiff_t            plane)
+{
+  Modes table[TCount];
+  Repeat<TCount>([&](int q) __attribute__((always_inline)) { table[q] = modes.of[q]; });
+#if BONE_PROJECTION_TILE_ROWS > 1
+  // To stay in registers: to read it again for each pixel takes longer.
+  if constexpr (TCount <= 20)
+  {
+    Repeat<TCount>([&](int q) __attribute__((always_inline)) { __asm__("" : "+v"(table[q])); });
+  }
+#endif
+  for (int i = 0; i < count; ++i)
+  {
+    float * const to = out + at[i] * plane;
+    Modes         sum, odd{};
+    __builtin_memcpy(&sum, to, sizeof(sum));
+    Repeat<TCount>([&](int q)
+                     __attribute__((always_inline)) { (q % 2 == 0 ? sum : odd) += table[q] * terms.of[q][i]; });
+    sum += odd;
+    __builtin_memcpy(to, &sum, sizeof(sum));
   }
 }
 
-/** Adds a cell's integrals and derivatives to the planes. */
+template <typename TLanes>
+inline void
+StoreRounded(const TLanes & value, float * to)
+{
+  constexpr int size = sizeof(TLanes) / sizeof(value[0]);
+  typedef float Rounded __attribute__((vector_size(size * sizeof(float))));
+  const Rounded rounded = __builtin_convertvector(value, Rounded);
+  __builtin_memcpy(to, &rounded, sizeof(rounded));
+}
+
+/** Adds a cell's integrals and derivatives. */
 template <typename TReal, int N>
-class PlaneAdder
+class ModeAdder
 {
 public:
-  using Lanes = typename Vector<TReal>::Type;
+  static constexpr int count = CoefficientCount(N);
 
-  /** For a member of a group, whose tables are set. */
-  PlaneAdder(const Derivatives &         derivatives,
-             const Band &                band,
-             const ModeTables<N> &       tables,
-             const GroupFrame &          frame,
-             const VertexMotion<Group> & motion,
-             int                         member)
-    : m_Derivatives(derivatives)
+  ModeAdder(const CellGroup & group, const Derivatives & derivatives, const Band & band, int member, double halfDepth)
+    : m_Group(group)
+    , m_Derivatives(derivatives)
     , m_Band(band)
-    , m_Density(Rows(tables, member), PlaneCount(N) * derivatives.densityModes)
-    , m_Shape(Rows(tables, member) + RowTableSize(PlaneCount(N) * derivatives.densityModes, N + 1),
-              shapeFunctions * derivatives.shapeModes)
-    , m_PerX(static_cast<TReal>(motion.perX[member]))
-    , m_PerY(static_cast<TReal>(motion.perY[member]))
-    , m_Offset(static_cast<TReal>(frame.s0[member] - derivatives.middle))
-    , m_PerZ(static_cast<TReal>(frame.halfDepth[member]))
+    , m_Member(member)
+    , m_HalfDepth(halfDepth)
   {
-    if constexpr (std::is_same_v<TReal, double>)
+    // Mostly there is one block of each, which is set up once.
+    SetDensityTable<N>(group, derivatives, member, halfDepth, 0, m_Density);
+    if (derivatives.vertexBlocks > 0)
     {
-      m_Density.Set(tables.density, member);
-      m_Shape.Set(tables.shape, member);
+      SetVertexTable(derivatives, member, 0, m_Vertex);
     }
   }
 
   void
-  StartRow(TReal eta)
+  Add(const RayTerms<TReal, N> & rays, const PixelList<TReal> & list)
   {
-    m_Density.At(eta);
-    m_Shape.At(eta);
-  }
-  void
-  EndRow(TReal)
-  {}
-  void
-  Take(int row, int column, const RayFunctions<TReal, N> & functions)
-  {
-    const std::ptrdiff_t plane = m_Derivatives.plane;
-    const int            shapeModes = m_Derivatives.shapeModes, densityModes = m_Derivatives.densityModes;
-    float *              out = m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column;
-    Accumulate(out, functions.value);
-    out += plane;
-    if (m_Derivatives.pose)
+    using Lanes = typename TermVector<TReal>::Type;
+    TermList<vertexTerms> vertex;
+    TermList<count>       basis;
+    const bool            withVertices = m_Derivatives.vertexBlocks > 0;
+    for (int i = 0; i < list.count; i += TermVector<TReal>::size)
     {
-      const Lanes x = m_PerX * functions.gx, y = m_PerY * functions.gy;
-      Accumulate(out, x);
-      Accumulate(out + plane, y);
-      Accumulate(out + 2 * plane, m_Offset * x + m_PerZ * (m_PerX * functions.gxz));
-      Accumulate(out + 3 * plane, m_Offset * y + m_PerZ * (m_PerY * functions.gyz));
-      out += posePlanes * plane;
+      Lanes xi, eta;
+      __builtin_memcpy(&xi, list.xi + i, sizeof(xi));
+      __builtin_memcpy(&eta, list.eta + i, sizeof(eta));
+      rays.Make(
+        xi,
+        eta,
+        Lanes{} == Lanes{},
+        withVertices,
+        [&](int p, const Lanes & value) __attribute__((always_inline)) { StoreRounded(value, basis.of[p] + i); },
+        [&](int q, const Lanes & value) __attribute__((always_inline)) { StoreRounded(value, vertex.of[q] + i); });
     }
-    AddModes<shapeFunctions>(m_Shape.Values(), functions.shape, shapeModes, plane, out);
-    AddModes<PlaneCount(N)>(m_Density.Values(), functions.moment, densityModes, plane, out + shapeModes * plane);
+    const int plane = (m_Derivatives.vertexBlocks + m_Derivatives.densityBlocks) * modeLanes;
+    float *   out = m_Band.data;
+    for (int block = 0; block < m_Derivatives.vertexBlocks; ++block, out += modeLanes)
+    {
+      if (m_Derivatives.vertexBlocks > 1)
+      {
+        SetVertexTable(m_Derivatives, m_Member, block, m_Vertex);
+      }
+      AddBlock(m_Vertex, vertex, list.at, list.count, out, plane);
+    }
+    for (int block = 0; block < m_Derivatives.densityBlocks; ++block, out += modeLanes)
+    {
+      if (m_Derivatives.densityBlocks > 1)
+      {
+        SetDensityTable<N>(m_Group, m_Derivatives, m_Member, m_HalfDepth, block, m_Density);
+      }
+      AddBlock(m_Density, basis, list.at, list.count, out, plane);
+    }
   }
 
 private:
-  static TReal *
-  Rows(const ModeTables<N> & tables, int member)
-  {
-    if constexpr (std::is_same_v<TReal, double>)
-    {
-      return tables.exactRows;
-    }
-    else
-    {
-      return tables.rows + member * tables.member;
-    }
-  }
-  template <int TCount>
-  static void
-  AddModes(const TReal * factors, const Lanes (&terms)[TCount], int modes, std::ptrdiff_t plane, float * out)
-  {
-    for (int m = 0; m < modes; ++m, factors += TCount, out += plane)
-    {
-      // Two sums, as each waits for the term before.
-      Lanes even{}, odd{};
-      Repeat<TCount>([&](int q) { (q % 2 == 0 ? even : odd) += factors[q] * terms[q]; });
-      Accumulate(out, even + odd);
-    }
-  }
-
+  const CellGroup &   m_Group;
   const Derivatives & m_Derivatives;
   const Band &        m_Band;
+  int                 m_Member;
+  double              m_HalfDepth;
 
-  RowTable<TReal, N + 1>       m_Density;
-  RowTable<TReal, shapeLevels> m_Shape;
-
-  TReal m_PerX, m_PerY;   ///< see VertexMotion
-  TReal m_Offset, m_PerZ; ///< s - middle = offset + perZ z
+  ModeTable<count>       m_Density;
+  ModeTable<vertexTerms> m_Vertex;
 };
 
-/** Calls function(member, frame, exact) for the cells of the group that the band sees; `exact` where they need double
- * precision. */
-template <int N, typename TFunction>
+template <int N>
 inline void
-ForEachSeen(const CellGroup & group, const GroupFrame & groupFrame, const Band & band, const TFunction & function)
+PrefetchNext(const Derivatives & derivatives)
 {
-  constexpr double largestGrowth = 64;
-  const Group      growth = Growth<N>(groupFrame);
-  for (int g = 0; g < group.count; ++g)
+  for (int m = 0; m < derivatives.densityModes; ++m)
   {
-    Frame frame;
-    if (PlaceFrame(groupFrame, g, band, frame) && SetPlanes(groupFrame, g, frame))
+    for (int g = 0; g < derivatives.nextCount; ++g)
     {
-      function(g, frame, frame.steep || !(growth[g] <= largestGrowth));
+      const double * const start = derivatives.density[m] + derivatives.next[g];
+      for (int p = 0; p < CoefficientCount(N) + lanes - 1; p += lanes)
+      {
+        __builtin_prefetch(start + p);
+      }
     }
   }
 }
@@ -389,48 +253,22 @@ template <int N>
 void
 DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & band)
 {
+  PrefetchNext<N>(derivatives);
   GroupFrame groupFrame;
   SetGroupFrame(group, groupFrame);
-  DensityTable<N> density;
-  density.Set(group, groupFrame);
-  ModeTables<N> tables(derivatives);
-  tables.SetShape(group, groupFrame, derivatives);
-  tables.SetDensity(group, groupFrame, derivatives);
-  ModeTables<N>::PrefetchNext(derivatives);
-  bool                      exactSet = false;
-  const VertexMotion<Group> motion = MotionOf(groupFrame, group.parallel);
-  const bool                withShape = derivatives.pose || derivatives.shapeModes > 0;
-  ForEachSeen<N>(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
-    if (exact)
-    {
-      if (!exactSet)
-      {
-        tables.SetExact(group, groupFrame, derivatives);
-        exactSet = true;
-      }
-      PlaneAdder<double, N> adder(derivatives, band, tables, groupFrame, motion, member);
-      ForEachRay<double, N>(frame, density, member, withShape, adder);
-    }
-    else
-    {
-      PlaneAdder<float, N> adder(derivatives, band, tables, groupFrame, motion, member);
-      ForEachRay<float, N>(frame, density, member, withShape, adder);
-    }
+  const FrameSteps steps = StepsOf(groupFrame, group.parallel);
+  GroupDensity<N>  density;
+  density.Set(group, groupFrame, steps.perX, steps.perY);
+  const auto add = [&](const auto real, int member, const Frame & frame) {
+    using Real = std::decay_t<decltype(real)>;
+    const RayTerms<Real, N> rays(groupFrame, frame, steps, density, member, group.parallel);
+    ModeAdder<Real, N>      adder(group, derivatives, band, member, groupFrame.halfDepth[member]);
+    PixelList<Real>         pixels;
+    ForEachPixelList(frame, band, pixels, [&](const PixelList<Real> & list) { adder.Add(rays, list); });
+  };
+  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
+    exact ? add(double(), member, frame) : add(float(), member, frame);
   });
-}
-
-inline void
-LoadWeights(const float * from, Vector<float>::Type & weights)
-{
-  __builtin_memcpy(&weights, from, sizeof(weights));
-}
-inline void
-LoadWeights(const float * from, Vector<double>::Type & weights)
-{
-  for (int i = 0; i < lanes; ++i)
-  {
-    weights[i] = from[i];
-  }
 }
 
 template <typename TLanes>
@@ -438,92 +276,71 @@ inline double
 Sum(const TLanes & values)
 {
   double sum = 0;
-  for (int i = 0; i < lanes; ++i)
+  for (std::size_t i = 0; i < sizeof(values) / sizeof(values[0]); ++i)
   {
     sum += values[i];
   }
   return sum;
 }
 
-/** The functions of a group's rays times the band's weights, summed by levels. */
-template <int N>
-struct LevelSums
-{
-  Group moment[N + 1][PlaneCount(N)]{};
-  Group shape[shapeLevels][shapeFunctions]{};
-};
-
-/** Sums functions times weights over the rays of a cell. */
+/** Sums a cell's terms times the band's weights over the pixels. */
 template <typename TReal, int N>
-class RaySummer
+class TermSummer
 {
 public:
-  using Lanes = typename Vector<TReal>::Type;
+  using Lanes = typename TermVector<TReal>::Type;
+  static constexpr int count = CoefficientCount(N);
 
-  RaySummer(const Band & band, bool withShape)
+  TermSummer(const Band & band, bool withVertices)
     : m_Band(band)
-    , m_WithShape(withShape)
+    , m_WithVertices(withVertices)
   {}
 
   void
-  StartRow(TReal)
+  Add(const RayTerms<TReal, N> & rays, const PixelList<TReal> & list)
   {
-    for (Lanes & sum : m_Row)
+    TReal weights[listSize + TermVector<TReal>::size];
+    for (int i = 0; i < list.count; ++i)
     {
-      sum = Lanes{};
+      weights[i] = m_Band.data[list.at[i]];
+    }
+    for (int i = list.count; i < list.count + TermVector<TReal>::size; ++i)
+    {
+      weights[i] = 0;
+    }
+    for (int i = 0; i < list.count; i += TermVector<TReal>::size)
+    {
+      Lanes xi, eta, weight;
+      __builtin_memcpy(&xi, list.xi + i, sizeof(xi));
+      __builtin_memcpy(&eta, list.eta + i, sizeof(eta));
+      __builtin_memcpy(&weight, weights + i, sizeof(weight));
+      rays.Make(
+        xi,
+        eta,
+        weight != 0,
+        m_WithVertices,
+        [&](int p, const Lanes & value) __attribute__((always_inline)) { m_Basis[p] += weight * value; },
+        [&](int q, const Lanes & value) __attribute__((always_inline)) { m_Vertex[q] += weight * value; });
     }
   }
   void
-  Take(int row, int column, const RayFunctions<TReal, N> & functions)
+  Write(double halfDepth, double * basis, double * positions) const
   {
-    Lanes weights;
-    LoadWeights(m_Band.data + (row - m_Band.firstRow) * m_Band.stride + column, weights);
-    Repeat<moments>([&](int q) { m_Row[q] += weights * functions.moment[q]; });
-    if (m_WithShape)
+    for (int p = 0; p < count; ++p)
     {
-      Repeat<shapeFunctions>([&](int q) { m_Row[moments + q] += weights * functions.shape[q]; });
+      basis[p] = halfDepth * basisFactors<N>.of[p] * Sum(m_Basis[p]);
     }
-  }
-  void
-  EndRow(TReal eta)
-  {
-    TReal power = 1;
-    for (int level = 0; level < levels; ++level, power *= eta)
+    for (int q = 0; m_WithVertices && q < vertexTerms; ++q)
     {
-      Repeat<moments>([&](int q) { m_Levels[level][q] += power * m_Row[q]; });
-      if (m_WithShape && level < shapeLevels)
-      {
-        Repeat<shapeFunctions>([&](int q) { m_Levels[level][moments + q] += power * m_Row[moments + q]; });
-      }
-    }
-  }
-  void
-  Write(int member, LevelSums<N> & sums) const
-  {
-    for (int level = 0; level <= N; ++level)
-    {
-      for (int q = 0; q < moments; ++q)
-      {
-        sums.moment[level][q][member] = Sum(m_Levels[level][q]);
-      }
-    }
-    for (int level = 0; level < shapeLevels; ++level)
-    {
-      for (int q = 0; q < shapeFunctions; ++q)
-      {
-        sums.shape[level][q][member] = Sum(m_Levels[level][moments + q]);
-      }
+      positions[q] = Sum(m_Vertex[q]);
     }
   }
 
 private:
-  static constexpr int moments = PlaneCount(N);
-  static constexpr int levels = N + 1 > shapeLevels ? N + 1 : shapeLevels;
-
   const Band & m_Band;
-  bool         m_WithShape;
-  Lanes        m_Row[moments + shapeFunctions];
-  Lanes        m_Levels[levels][moments + shapeFunctions] = {};
+  bool         m_WithVertices;
+  Lanes        m_Basis[count] = {};
+  Lanes        m_Vertex[vertexTerms] = {};
 };
 
 template <int N>
@@ -532,44 +349,21 @@ AdjoinOfDegree(CellGroup & group, const Adjoint & adjoint, const Band & band)
 {
   GroupFrame groupFrame;
   SetGroupFrame(group, groupFrame);
-  DensityTable<N> density;
-  density.Set(group, groupFrame);
-  LevelSums<N> sums;
-  const bool   withShape = adjoint.positions[0] != nullptr;
-  ForEachSeen<N>(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
-    if (exact)
-    {
-      RaySummer<double, N> summer(band, withShape);
-      ForEachRay<double, N>(frame, density, member, withShape, summer);
-      summer.Write(member, sums);
-    }
-    else
-    {
-      RaySummer<float, N> summer(band, withShape);
-      ForEachRay<float, N>(frame, density, member, withShape, summer);
-      summer.Write(member, sums);
-    }
+  const FrameSteps steps = StepsOf(groupFrame, group.parallel);
+  GroupDensity<N>  density;
+  density.Set(group, groupFrame, steps.perX, steps.perY);
+  const bool withVertices = adjoint.positions[0] != nullptr;
+  const auto sum = [&](const auto real, int member, const Frame & frame) {
+    using Real = std::decay_t<decltype(real)>;
+    const RayTerms<Real, N> rays(groupFrame, frame, steps, density, member, group.parallel);
+    TermSummer<Real, N>     summer(band, withVertices);
+    PixelList<Real>         pixels;
+    ForEachPixelList(frame, band, pixels, [&](const PixelList<Real> & list) { summer.Add(rays, list); });
+    summer.Write(groupFrame.halfDepth[member], adjoint.basis[member], adjoint.positions[member]);
+  };
+  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
+    exact ? sum(double(), member, frame) : sum(float(), member, frame);
   });
-
-  Monomials<N> monomials;
-  SetLevelsAdjoint<N>(sums.moment[0], groupFrame.kappa, monomials);
-  Group basis[CoefficientCount(N)] = {}, vertex[4][3];
-  int   exponent[4] = { 0, 0, 0, 0 };
-  BlossomAdjoint<N, N>::Run(basis, groupFrame.mu, 0, exponent, monomials);
-  AffineField<Group> field;
-  SetShapeLevelsAdjoint(sums.shape, groupFrame.kappa, field);
-  SetFieldAdjoint(groupFrame, MotionOf(groupFrame, group.parallel), field, vertex);
-  for (int g = 0; g < group.count; ++g)
-  {
-    for (int p = 0; p < CoefficientCount(N); ++p)
-    {
-      adjoint.basis[g][p] = groupFrame.halfDepth[g] * basis[p][g];
-    }
-    for (int i = 0; withShape && i < 12; ++i)
-    {
-      adjoint.positions[g][i] = vertex[i / 3][i % 3][g];
-    }
-  }
 }
 
 inline void

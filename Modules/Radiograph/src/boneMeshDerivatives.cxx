@@ -6,7 +6,6 @@
 #include "boneProjectedCells.h"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 
 namespace bone
@@ -109,69 +108,10 @@ PoseVelocity(int mode, const Vector3 & fromCentre)
   return mode < 3 ? axis : Vector3(axis.cross(fromCentre));
 }
 
-/** The derivative by a rigid motion as a combination of the four that the kernels make: along the ray of pixel
- * (column, row) a point at parameter s moves by a + (s - middle) b. Of that the part across the ray counts, in columns
- * and rows times s (parallel beam: in columns and rows), and that along the ray of b, which stretches the mesh. */
-class PoseCombination
+/** Numbers aligned for vectors, so many modes at a time. */
+struct alignas(64) ModeBlock
 {
-public:
-  PoseCombination(const RayFrame & rays, const Vector3 & centre, double middle, int mode)
-    : m_Parallel(rays.IsParallel())
-  {
-    const auto at = [&](double column, double row) {
-      const Vector3               direction = rays.Direction(column, row);
-      const Vector3               x = rays.Origin(column, row) + middle * direction - centre;
-      Eigen::Matrix<double, 3, 2> moved;
-      moved.col(0) = rays.ToPixel() * PoseVelocity(mode, x);
-      moved.col(1) = rays.ToPixel() * (PoseVelocity(mode, x + direction) - PoseVelocity(mode, x));
-      return moved;
-    };
-    m_AtZero = at(0, 0);
-    m_PerColumn = at(1, 0) - m_AtZero;
-    m_PerRow = at(0, 1) - m_AtZero;
-  }
-
-  /** Adds the combination of the image and the derivatives that follow it, `plane` apart, at the row's columns, where
-   * all of these begin. */
-  void
-  Add(int row, std::pair<int, int> columns, const float * image, std::ptrdiff_t plane, float * sum) const
-  {
-    // Quadratic in the column: the part along columns, then that along rows, of a and of b.
-    const Eigen::Matrix<double, 3, 2> start = m_AtZero + row * m_PerRow;
-    const double                      along = m_Parallel ? 0.0 : 1.0;
-    for (int k = 0; k < projection::posePlanes; ++k)
-    {
-      const int    part = k / 2, axis = 1 + k % 2;
-      const double shift = along * (axis == 1 ? 0.0 : row), perShift = along * (axis == 1 ? 1.0 : 0.0);
-      const double step0 = start(0, part), step1 = m_PerColumn(0, part);
-      const auto   c0 = static_cast<float>(start(axis, part) - shift * step0);
-      const auto   c1 = static_cast<float>(m_PerColumn(axis, part) - shift * step1 - perShift * step0);
-      const auto   c2 = static_cast<float>(-perShift * step1);
-      AddProduct(c0, c1, c2, columns, image + (k + 1) * plane, sum);
-    }
-    AddProduct(static_cast<float>(start(0, 1)), static_cast<float>(m_PerColumn(0, 1)), 0.0f, columns, image, sum);
-  }
-
-private:
-  /** sum += (c0 + c1 c + c2 c^2) from at each column c. */
-  static void
-  AddProduct(float c0, float c1, float c2, std::pair<int, int> columns, const float * from, float * sum)
-  {
-    for (int c = columns.first; c < columns.second; ++c)
-    {
-      const auto x = static_cast<float>(c);
-      *sum++ += (c0 + x * (c1 + x * c2)) * *from++;
-    }
-  }
-
-  bool                        m_Parallel;
-  Eigen::Matrix<double, 3, 2> m_AtZero, m_PerColumn, m_PerRow; ///< (s, s column, s row) of a and b
-};
-
-/** Memory aligned for vectors. */
-struct alignas(64) Aligned
-{
-  unsigned char bytes[64];
+  float of[projection::modeLanes];
 };
 
 class DerivativeProjector
@@ -187,6 +127,10 @@ public:
     , m_Options(options)
     , m_Modes(modes)
     , m_Projected(points, cells, view, options, std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 }))
+    , m_VertexModes((modes.pose ? poseModes : 0) + static_cast<int>(modes.shape.size()))
+    , m_VertexBlocks(projection::BlockCount(m_VertexModes))
+    , m_Density{ cells.coefficients.data() }
+    , m_DensityBlocks(projection::BlockCount(1 + modes.density.size()))
   {
     for (const auto & mode : modes.density)
     {
@@ -198,140 +142,122 @@ public:
   Run(const LoopRunner & loops, const std::vector<float *> & images);
 
 private:
-  /** Where a band's derivatives lie, after the image: the kernels' four of the pose, shape, density; and the image and
-   * the pose's six of the cells that the kernels cannot take. */
+  /** The numbers of a pixel: vertex modes, then density modes, in whole blocks. */
   int
-  ShapePlane() const
+  Blocks() const
   {
-    return 1 + (m_Modes.pose ? projection::posePlanes : 0);
+    return m_VertexBlocks + m_DensityBlocks;
   }
-  int
-  DensityPlane() const
-  {
-    return ShapePlane() + static_cast<int>(m_Modes.shape.size());
-  }
-  int
-  GeneralPlane() const
-  {
-    return DensityPlane() + static_cast<int>(m_Modes.density.size());
-  }
-  int
-  Planes() const
-  {
-    return GeneralPlane() + (m_Projected.HasGeneral() ? 1 + (m_Modes.pose ? poseModes : 0) : 0);
-  }
+  /** Velocity of a point by a vertex mode, mm per unit. */
+  Vector3
+  Velocity(int mode, std::size_t point) const;
   void
-  AddGeneral(std::size_t t, const projection::Band & band, std::ptrdiff_t plane) const;
+  SetDisplacements(const ParallelFor & parallelFor);
+  void
+  AddCells(const std::vector<IdType> & ids, const projection::Band & band) const;
+  void
+  AddGeneral(std::size_t t, const projection::Band & band) const;
   void
   DrawBand(std::size_t bandId, const std::vector<float *> & images) const;
   void
-  WriteRow(int                          row,
-           std::pair<int, int>          columns,
-           const float *                sums,
-           std::ptrdiff_t               plane,
-           const std::vector<float *> & images) const;
+  WriteRow(int row, std::pair<int, int> columns, const float * sums, const std::vector<float *> & images) const;
 
   const std::vector<Vector3> &  m_Points;
   const MeshArrays &            m_Cells;
   const MeshRadiographOptions & m_Options;
   const RadiographModes &       m_Modes;
   ProjectedCells                m_Projected;
-  double                        m_Middle{ 0.0 }; ///< of the points, in s
-  std::vector<const double *>   m_Density;
-  std::vector<PoseCombination>  m_Pose;
-  std::vector<Vector3>          m_Displacement; ///< of each point and shape mode, in the rays' coordinates
+  int                           m_VertexModes; ///< pose and shape
+  int                           m_VertexBlocks;
+  std::vector<const double *>   m_Density; ///< that of the mesh, then the modes'
+  int                           m_DensityBlocks;
+  std::vector<ModeBlock>        m_Displacement; ///< of each point, in the rays' coordinates: 3 x vertex blocks
 };
+
+Vector3
+DerivativeProjector::Velocity(int mode, std::size_t point) const
+{
+  const int shape = mode - (m_Modes.pose ? poseModes : 0);
+  return shape < 0 ? PoseVelocity(mode, m_Points[point] - m_Modes.poseCentre) : m_Modes.shape[shape][point];
+}
+
+void
+DerivativeProjector::SetDisplacements(const ParallelFor & parallelFor)
+{
+  m_Displacement.assign(3 * m_VertexBlocks * m_Points.size(), ModeBlock{});
+  ForEachInBlocks(parallelFor, m_Points.size(), [&](std::size_t p) {
+    float * const to = m_Displacement[3 * m_VertexBlocks * p].of;
+    for (int mode = 0; mode < m_VertexModes; ++mode)
+    {
+      const Vector3 moved = m_Projected.Rays().ToPixel() * Velocity(mode, p);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        to[axis * m_VertexBlocks * projection::modeLanes + mode] = static_cast<float>(moved[axis]);
+      }
+    }
+  });
+}
 
 void
 DerivativeProjector::Run(const LoopRunner & loops, const std::vector<float *> & images)
 {
   m_Projected.Prepare(loops.prepare);
-  if (m_Modes.pose)
+  if (m_VertexModes > 0)
   {
-    m_Middle = m_Projected.MeanParameter();
-    for (int mode = 0; mode < poseModes; ++mode)
-    {
-      m_Pose.emplace_back(m_Projected.Rays(), m_Modes.poseCentre, m_Middle, mode);
-    }
+    SetDisplacements(loops.prepare);
   }
-  const std::size_t shapeModes = m_Modes.shape.size();
-  m_Displacement.resize(m_Points.size() * shapeModes + 1); // one to spare, as the kernels read on
-  ForEachInBlocks(loops.prepare, m_Points.size() * shapeModes, [&](std::size_t i) {
-    m_Displacement[i] = m_Projected.Rays().ToPixel() * m_Modes.shape[i % shapeModes][i / shapeModes];
-  });
   loops.draw(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, images); });
 }
 
 void
-DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band, std::ptrdiff_t plane) const
+DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) const
 {
   const ChordDerivative derivative(m_Projected.Density(), m_Options, t);
   const std::size_t     first = t * BernsteinCount(m_Cells.maximumDegree);
   const int             count = BernsteinCount(m_Cells.degree[t]);
   m_Projected.ForEachChord(
     t, band.firstRow, band.endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric & mu) {
-      const ChordTerms terms = derivative.At(chord, RatesAlong(mu, m_Projected.Rays(), column, row));
-      float *          sums = band.data + (row - band.firstRow) * band.stride + column;
-      const auto       add = [&](int to, double value) { sums[to * plane] += static_cast<float>(value); };
-      // The change for displacements of the vertices.
-      const auto change = [&](const auto & displacement) {
+      const ChordTerms     terms = derivative.At(chord, RatesAlong(mu, m_Projected.Rays(), column, row));
+      const std::ptrdiff_t pixel = (row - band.firstRow) * band.stride + column - band.firstColumn;
+      float *              sums = band.data + pixel * Blocks() * projection::modeLanes;
+      for (int mode = 0; mode < m_VertexModes; ++mode)
+      {
         double sum = 0;
         for (int q = 0; q < 12; ++q)
         {
-          sum += terms.k[q] * mu.gradient.row(q / 4 + 1).dot(displacement(m_Cells.tetrahedra[t][q % 4]));
+          sum += terms.k[q] * mu.gradient.row(q / 4 + 1).dot(Velocity(mode, m_Cells.tetrahedra[t][q % 4]));
         }
-        return sum;
-      };
-      add(GeneralPlane(), m_Projected.Density().Integrate(t, chord.entry, chord.exit, chord.length));
-      for (int mode = 0; m_Modes.pose && mode < poseModes; ++mode)
-      {
-        add(GeneralPlane() + 1 + mode,
-            change([&](IdType v) { return PoseVelocity(mode, m_Points[v] - m_Modes.poseCentre); }));
+        sums[mode] += static_cast<float>(sum);
       }
-      for (std::size_t m = 0; m < m_Modes.shape.size(); ++m)
-      {
-        add(ShapePlane() + static_cast<int>(m), change([&](IdType v) { return m_Modes.shape[m][v]; }));
-      }
-      for (std::size_t m = 0; m < m_Density.size(); ++m)
+      sums += m_VertexBlocks * projection::modeLanes;
+      sums[0] += static_cast<float>(m_Projected.Density().Integrate(t, chord.entry, chord.exit, chord.length));
+      for (std::size_t m = 1; m < m_Density.size(); ++m)
       {
         const double sum = std::inner_product(terms.basis, terms.basis + count, m_Density[m] + first, 0.0);
-        add(DensityPlane() + static_cast<int>(m), m_Options.scale * sum);
+        sums[m] += static_cast<float>(m_Options.scale * sum);
       }
     });
 }
 
 void
-DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & images) const
+DerivativeProjector::AddCells(const std::vector<IdType> & ids, const projection::Band & band) const
 {
-  const int              firstRow = m_Projected.FirstRow(bandId), endRow = m_Projected.EndRow(bandId);
-  const int              columns = m_Projected.Rays().Columns();
-  const std::ptrdiff_t   plane = columns + projection::lanes;
-  const std::ptrdiff_t   stride = plane * Planes();
-  std::vector<float>     sums(stride * (endRow - firstRow), 0.0f);
-  const projection::Band band{ sums.data(), stride, firstRow, endRow, columns };
-
-  const std::size_t    shapeModes = m_Modes.shape.size(), densityModes = m_Density.size();
-  std::vector<Aligned> scratch(
-    projection::DerivativeScratch(shapeModes, densityModes, m_Cells.maximumDegree) / sizeof(Aligned) + 1);
   projection::Derivatives task{};
-  task.pose = m_Modes.pose;
-  task.middle = m_Middle;
-  task.shapeModes = static_cast<int>(shapeModes);
-  task.densityModes = static_cast<int>(densityModes);
+  task.vertexBlocks = m_VertexBlocks;
+  task.densityBlocks = m_DensityBlocks;
+  task.densityModes = static_cast<int>(m_Density.size());
   task.density = m_Density.data();
-  task.plane = plane;
-  task.scratch = scratch.data();
   const std::ptrdiff_t        coefficients = BernsteinCount(m_Cells.maximumDegree);
   const projection::Kernels & kernels = projection::SelectKernels(m_Options.portable);
-  const std::vector<IdType>   ids = m_Projected.CellsOfBand(bandId);
   m_Projected.ForEachGroup(
     ids,
     [&](projection::CellGroup & group, const IdType * members, std::size_t after) {
       for (int g = 0; g < group.count; ++g)
       {
-        for (int i = 0; shapeModes > 0 && i < 4; ++i)
+        for (int i = 0; m_VertexBlocks > 0 && i < 4; ++i)
         {
-          task.shape[g][i] = m_Displacement[m_Cells.tetrahedra[members[g]][i] * shapeModes].data();
+          const std::size_t point = m_Cells.tetrahedra[members[g]][i];
+          task.displacement[g][i] = m_Displacement[3 * m_VertexBlocks * point].of;
         }
         task.coefficient[g] = static_cast<std::ptrdiff_t>(members[g]) * coefficients;
       }
@@ -342,11 +268,22 @@ DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & i
       }
       kernels.derive(group, task, band);
     },
-    [&](std::size_t t) { AddGeneral(t, band, plane); });
+    [&](std::size_t t) { AddGeneral(t, band); });
+}
+
+void
+DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & images) const
+{
+  const int                 firstRow = m_Projected.FirstRow(bandId), endRow = m_Projected.EndRow(bandId);
+  const int                 columns = m_Projected.Rays().Columns();
+  const std::vector<IdType> ids = m_Projected.CellsOfBand(bandId);
   const std::pair<int, int> range = m_Projected.ColumnsOf(ids);
+  const std::ptrdiff_t      stride = range.second - range.first;
+  std::vector<ModeBlock>    sums(stride * (endRow - firstRow) * Blocks() + 1, ModeBlock{}); // never empty
+  AddCells(ids, projection::Band{ sums.data()->of, stride, firstRow, endRow, columns, range.first });
   for (int row = firstRow; row < endRow; ++row)
   {
-    WriteRow(row, range, sums.data() + (row - firstRow) * stride, plane, images);
+    WriteRow(row, range, sums.data()->of + (row - firstRow) * stride * Blocks() * projection::modeLanes, images);
   }
 }
 
@@ -355,37 +292,41 @@ void
 DerivativeProjector::WriteRow(int                          row,
                               std::pair<int, int>          columns,
                               const float *                sums,
-                              std::ptrdiff_t               plane,
                               const std::vector<float *> & images) const
 {
-  const RayFrame &   rays = m_Projected.Rays();
-  const int          first = columns.first, count = columns.second - columns.first;
-  std::vector<float> lengths(count), sum(count);
+  const RayFrame &     rays = m_Projected.Rays();
+  const int            count = columns.second - columns.first;
+  const std::ptrdiff_t each = Blocks() * projection::modeLanes;
+  const int            density = m_VertexBlocks * projection::modeLanes;
+  std::vector<float>   lengths(count);
   rays.StepLengths(row, columns.first, columns.second, lengths.data());
-  sums += first;
-  auto       image = images.begin();
-  const auto write = [&](const float * from) {
-    float * to = *image++ + static_cast<std::size_t>(row) * rays.Columns();
-    std::fill_n(to, first, 0.0f);
-    std::transform(lengths.begin(), lengths.end(), from, to + first, std::multiplies<float>());
+  for (float * image : images)
+  {
+    float * const to = image + static_cast<std::size_t>(row) * rays.Columns();
+    std::fill_n(to, columns.first, 0.0f);
     std::fill(to + columns.second, to + rays.Columns(), 0.0f);
-  };
-  const auto setGeneral = [&](int k) {
-    const float * const from = sums + (GeneralPlane() + k) * plane;
-    m_Projected.HasGeneral() ? std::copy_n(from, count, sum.data()) : std::fill_n(sum.data(), count, 0.0f);
-  };
-  setGeneral(0);
-  std::transform(sum.begin(), sum.end(), sums, sum.begin(), std::plus<float>());
-  write(sum.data());
-  for (std::size_t mode = 0; mode < m_Pose.size(); ++mode)
-  {
-    setGeneral(1 + static_cast<int>(mode));
-    m_Pose[mode].Add(row, columns, sums, plane, sum.data());
-    write(sum.data());
   }
-  for (int from = ShapePlane(); from < GeneralPlane(); ++from)
+  // All images of a few pixels, which stay in the cache.
+  constexpr int few = 32;
+  for (int start = 0; start < count; start += few)
   {
-    write(sums + from * plane);
+    const int  end = std::min(count, start + few);
+    const auto write = [&](std::size_t image, int number) {
+      float * const to = images[image] + static_cast<std::size_t>(row) * rays.Columns() + columns.first;
+      for (int c = start; c < end; ++c)
+      {
+        to[c] = lengths[c] * sums[c * each + number];
+      }
+    };
+    write(0, density);
+    for (int mode = 0; mode < m_VertexModes; ++mode)
+    {
+      write(1 + mode, mode);
+    }
+    for (std::size_t mode = 1; mode < m_Density.size(); ++mode)
+    {
+      write(m_VertexModes + mode, density + static_cast<int>(mode));
+    }
   }
 }
 

@@ -46,8 +46,6 @@ ProjectedCells::Prepare(const ParallelFor & parallelFor)
     }
     FillBins(first, end, m_Bins[b]);
   });
-  m_HasGeneral =
-    std::any_of(m_Rows.begin(), m_Rows.end(), [](const RowRange & range) { return range.path == Path::General; });
 }
 
 void
@@ -99,14 +97,6 @@ ProjectedCells::SetBands()
     const auto        at = std::lower_bound(count.begin(), count.end(), share) - count.begin();
     m_BandStart[band] = std::clamp(static_cast<int>(at), m_BandStart[band - 1], rows);
   }
-}
-
-double
-ProjectedCells::MeanParameter() const
-{
-  const double sum = std::accumulate(
-    m_Projected.begin(), m_Projected.end(), 0.0, [](double before, const ProjectedPoint & p) { return before + p[2]; });
-  return m_Projected.empty() ? 0.0 : sum / static_cast<double>(m_Projected.size());
 }
 
 projection::CellGroup

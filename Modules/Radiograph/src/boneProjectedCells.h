@@ -61,16 +61,6 @@ public:
   {
     return m_BandStart[band + 1];
   }
-  /** Whether there are cells near the source or through the detector, which the kernels cannot take. */
-  bool
-  HasGeneral() const
-  {
-    return m_HasGeneral;
-  }
-  /** Mean of the points' ray parameter s; 0 without points. */
-  double
-  MeanParameter() const;
-
   /** The cells that meet a band, ascending. */
   std::vector<IdType>
   CellsOfBand(std::size_t band) const;
@@ -136,8 +126,7 @@ private:
   RayFrame                      m_Frame;
 
   std::vector<ProjectedPoint> m_Projected;
-  std::vector<RowRange>       m_Rows; ///< of each cell
-  bool                        m_HasGeneral{ false };
+  std::vector<RowRange>       m_Rows;      ///< of each cell
   std::vector<int>            m_BandStart; ///< first row of each band, and the number of rows
   std::vector<Bins>           m_Bins;      ///< of blocks of cells
 };

@@ -50,74 +50,45 @@ struct CellGroup
   bool           parallel;
 };
 
-/** Rows [firstRow, endRow) of the image, to be added to: integrals in s, not yet times the rays' step length. */
+/** Rows [firstRow, endRow) of the image. Kernels::add adds to them integrals in s, not yet times the rays' step length;
+ * Kernels::derive takes stride and firstColumn in pixels of all modes' numbers. */
 struct Band
 {
-  float *        data; ///< pixel (0, firstRow)
+  float *        data; ///< pixel (firstColumn, firstRow)
   std::ptrdiff_t stride;
   int            firstRow;
   int            endRow;
   int            columns;
+  int            firstColumn{ 0 }; ///< 0 for Kernels::add
 };
 
-/** What is derived from a group's integrals beside these themselves, one plane each in the order below. Displacements
- * of vertices are in the coordinates (s, column s, row s), in a parallel beam (s, column, row). */
+/** Modes that are computed at once: a pixel has whole blocks of as many numbers. */
+constexpr int modeLanes = 16;
+constexpr int
+BlockCount(std::size_t modes)
+{
+  return static_cast<int>((modes + modeLanes - 1) / modeLanes);
+}
+
+/** What is derived. At each pixel lie the derivatives by displacements of the vertices, in blocks, then, in blocks, the
+ * integrals of density modes, of which the first is the density itself. */
 struct Derivatives
 {
-  bool                   pose;   ///< four planes: displacement by 1 along columns, along rows, and by s - middle along
-  double                 middle; ///< both
-  int                    shapeModes;
-  const double *         shape[groupSize][4]; ///< of each cell and vertex: modes x 3, and one number more
+  int                    vertexBlocks;
+  const float *          displacement[groupSize][4]; ///< of each cell and vertex: 3 x modes, see boneRayTerms.hxx
+  int                    densityBlocks;
   int                    densityModes;
   const double * const * density;                ///< coefficients of each mode
   std::ptrdiff_t         coefficient[groupSize]; ///< where each cell's begin
   int                    nextCount;              ///< of cells in the group to come, whose coefficients are fetched
   std::ptrdiff_t         next[groupSize];        ///< where theirs begin
-  std::ptrdiff_t         plane;                  ///< floats in the band from one derivative to the next
-  void *                 scratch;                ///< DerivativeScratch() bytes, aligned for Group
 };
-
-constexpr int posePlanes = 4;
-constexpr int shapeFunctions = 9, shapeLevels = 3; ///< see boneDerivativeKernel.hxx
-
-/** Products of two variables up to a degree. */
-constexpr int
-PlaneCount(int degree)
-{
-  return (degree + 1) * (degree + 2) / 2;
-}
-
-/** Functions of a row that are computed at once. */
-constexpr int tableLanes = 16;
-constexpr std::size_t
-RowTableSize(std::size_t count, std::size_t levels)
-{
-  return (count + tableLanes - 1) / tableLanes * tableLanes * (levels + 1);
-}
-/** Numbers, eight cells each, of the modes' tables of a group: those of density or those of shape. */
-constexpr std::size_t
-PairCount(std::size_t shapeModes, std::size_t densityModes, int degree)
-{
-  const std::size_t density = PlaneCount(degree) * ((densityModes + 1) / 2) * (degree + 1);
-  const std::size_t shape = shapeFunctions * ((shapeModes + 1) / 2) * shapeLevels;
-  return density > shape ? density : shape;
-}
-/** Bytes: see ModeTables. */
-constexpr std::size_t
-DerivativeScratch(std::size_t shapeModes, std::size_t densityModes, int degree)
-{
-  const std::size_t density = PlaneCount(degree) * densityModes, levels = degree + 1;
-  const std::size_t shape = shapeFunctions * shapeModes;
-  const std::size_t member = RowTableSize(density, levels) + RowTableSize(shape, shapeLevels);
-  return sizeof(float) * (groupSize * member + 2 * groupSize * PairCount(shapeModes, densityModes, degree)) +
-         sizeof(double) * (member + groupSize * (density * levels + shape * shapeLevels));
-}
 
 /** Sums over the pixels, of which the band holds the weights. */
 struct Adjoint
 {
   double * basis[groupSize];     ///< of each cell: weight times integral of each Bernstein polynomial; not scaled
-  double * positions[groupSize]; ///< of each cell, or all null: 4 vertices x 3, by their displacements as above
+  double * positions[groupSize]; ///< of each cell, or all null: 4 vertices x 3, by their displacements
 };
 
 /** Those of a group take 1..groupSize tetrahedra of one degree and fill up what is beyond `count`. */
@@ -125,9 +96,9 @@ struct Kernels
 {
   /** Adds the tetrahedra's integrals to the band, in order. */
   void (*add)(const CellRun & run, const Band & band);
-  /** The same for a group, and derivatives by shape modes and by density modes to the planes that follow. */
+  /** The same for a group, with derivatives. */
   void (*derive)(CellGroup & group, const Derivatives & derivatives, const Band & band);
-  /** Sets the sums of each cell. */
+  /** Sets the sums of each cell that the band sees. */
   void (*adjoin)(CellGroup & group, const Adjoint & adjoint, const Band & band);
 };
 
