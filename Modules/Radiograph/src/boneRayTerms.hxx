@@ -401,20 +401,20 @@ private:
     }
     else
     {
-      first = Value(atEntry);
-      last = Value(atExit);
+      SetValue(atEntry, first);
+      SetValue(atExit, last);
     }
   }
-  Lanes
-  Value(const Lanes (&mu)[4]) const
+  void
+  SetValue(const Lanes (&mu)[4], Lanes & value) const
   {
-    Lanes products[count], value{};
+    Lanes products[count];
+    value = Lanes{};
     SetProducts<N>(Lanes{} + 1, mu, products);
     for (int p = 0; p < count; ++p)
     {
       value += m_Density[p * groupSize] * products[p];
     }
-    return value;
   }
 
   const TReal * m_Density;
