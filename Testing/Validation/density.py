@@ -76,7 +76,7 @@ def independent_check(bonetk, mesh, ct, labels, label, work):
     def check(degree):
         out, answer = work / f"d{degree}.vtu", work / "check.json"
         run(bonetk, "fit", ct, mesh, "--degree", degree, "-o", out, "-q")
-        subprocess.run(["/usr/bin/python3", os.environ["CHECK"], out, "--ct", ct, "--label", labels, "--label-value", label,
+        subprocess.run(["/usr/bin/python3", os.environ["CHECK"], out, "--ct", ct, "--label", labels, "--label-value", str(label),
                         "--json", answer], capture_output=True)
         return answer.read_text()
 

@@ -34,7 +34,8 @@ Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled witho
 - Filled: slabs and ends filled by overlaying the triangulations of their slices. Left out: holes that are bone above and
   below. Parted: groups of pieces that belong together by distance but were not joined.
 - Against the label: Dice overlap, mean distance (mm) from the mesh's surface to the label's and back, at one spacing of
-  each real bone. Seconds are of one core.
+  each real bone. Dice counts voxel centres inside against the mesh's own volume: large voxels have corners outside, and a
+  bone that leaves the image ends at its last slice, so it can come out above 1. Seconds are of one core.
 - Valid: by {checker}.
 """
 
