@@ -231,14 +231,6 @@ OutlinesOf(const PlaneField & field, double level)
   return loops;
 }
 
-double
-DistanceToSegment(const Vector2 & q, const Vector2 & a, const Vector2 & b)
-{
-  const Vector2 along = b - a;
-  const double  t = std::clamp((q - a).dot(along) / std::max(along.squaredNorm(), 1e-30), 0.0, 1.0);
-  return (q - a - t * along).norm();
-}
-
 // The narrowest place between a clockwise loop and the loops around or beside it.
 std::pair<Vector2, Vector2>
 NarrowestPlace(const std::vector<Polygon> & loops, const Polygon & inner)
@@ -282,15 +274,12 @@ LayerFinder::PartAround(PlaneField & field, const std::vector<Polygon> & holes) 
     {
       return;
     }
-    const auto place = NarrowestPlace(loops, *around);
-    for (int j = 0; j < field.grid.size[1]; ++j)
+    const auto       place = NarrowestPlace(loops, *around);
+    const PlaneField away = ComputeDistanceField({ { place.first, place.second } }, field.grid).distance;
+    for (std::size_t n = 0; n < field.values.size(); ++n)
     {
-      for (int i = 0; i < field.grid.size[0]; ++i)
-      {
-        const double away = DistanceToSegment(field.grid.Node(i, j), place.first, place.second);
-        float &      value = field.values[field.grid.Offset(i, j)];
-        value = std::min(value, static_cast<float>(away - m_Parameters.minimumDistance));
-      }
+      const double distance = std::abs(away.values[n]);
+      field.values[n] = std::min(field.values[n], static_cast<float>(distance - m_Parameters.minimumDistance));
     }
   }
 }

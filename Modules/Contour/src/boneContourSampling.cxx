@@ -22,6 +22,7 @@ constexpr double Gradation = 0.3;
 constexpr int    SamplesPerSpan = 8;
 constexpr double ChordFactor = 12.0; // a chord of length s on curvature k rises by k s^2 / 8, of which 2/3 lie outside
 constexpr int    MostRefinements = 4;
+constexpr int    MostFailures = 1; // of a pair whose contours given are apart, before they may come nearer
 
 struct LoopPlan
 {
@@ -217,13 +218,15 @@ public:
   }
 
 private:
-  // An inner contour and one that it must keep away from: the one around it, or a hole beside it.
+  // An inner contour and one that it must keep away from: the one around it, a hole beside it, or an earlier contour of
+  // its layer beside it.
   struct Pair
   {
     std::size_t inner;
     std::size_t fixed;
     bool        inside; // of the fixed one
     double      gap;
+    int         failures{ 0 };
   };
 
   // Pairs from the outside in.
@@ -241,12 +244,12 @@ private:
       for (std::size_t other = 0; other < m_Plans.size(); ++other)
       {
         const bool inside = around[c] == static_cast<int>(other) && !m_Plans[other].hole;
-        const bool beside = around[c] >= 0 && around[c] == around[other] && m_Plans[other].hole;
+        const bool beside = around[c] >= 0 && around[c] == around[other] && (m_Plans[other].hole || other < c);
         if (other == c || m_Plans[c].hole || m_Plans[c].layer == 0 || (!inside && !beside))
         {
           continue;
         }
-        m_Pairs.push_back({ c, other, inside, m_Parameters.minimumDistance });
+        m_Pairs.push_back({ c, other, inside, m_Parameters.minimumDistance, 0 });
       }
     }
     std::stable_sort(m_Pairs.begin(), m_Pairs.end(), [this](const Pair & a, const Pair & b) {
@@ -254,8 +257,8 @@ private:
     });
   }
 
-  // Whether each pair keeps its distance; a contour with several goes round them a few times. A pair that cannot shall
-  // from then on keep what the contours given do.
+  // Whether each pair keeps its distance; a contour with several goes round them a few times. A pair that cannot,
+  // though sampled more finely if the contours given keep theirs, shall from then on keep nearly what those do.
   std::vector<char>
   MoveApart()
   {
@@ -279,8 +282,12 @@ private:
     {
       if (apart[p] == 0)
       {
-        m_Pairs[p].gap = std::min(
-          m_Pairs[p].gap, 0.9 * DistanceBetween(m_Plans[m_Pairs[p].inner].given, m_Plans[m_Pairs[p].fixed].given));
+        Pair &       pair = m_Pairs[p];
+        const double given = DistanceBetween(m_Plans[pair.inner].given, m_Plans[pair.fixed].given);
+        if (given < pair.gap || ++pair.failures > MostFailures)
+        {
+          pair.gap = std::min(pair.gap, 0.9 * given);
+        }
       }
     }
     return apart;

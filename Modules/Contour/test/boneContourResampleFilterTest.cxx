@@ -25,6 +25,23 @@ Resampler(ContourStack * stack, double maximumSpacing)
   return filter;
 }
 
+// Least distance between two contours of the first slice.
+double
+LeastDistance(const ContourStack & stack, std::size_t a, std::size_t b)
+{
+  const auto & contours = stack.GetSlices()[0].contours;
+  double       distance = std::numeric_limits<double>::max();
+  for (const auto & [from, to] : { std::pair{ a, b }, std::pair{ b, a } })
+  {
+    const Polygon polygon = PlanePoints(stack, contours[to]);
+    for (const Vector2 & q : PlanePoints(stack, contours[from]))
+    {
+      distance = std::min(distance, DistanceTo(q, polygon));
+    }
+  }
+  return distance;
+}
+
 TEST(ClosedBSpline, FitsACircleAndAnEllipseWithinTolerance)
 {
   for (const double b : { 20.0, 6.0 })
@@ -192,22 +209,37 @@ TEST(ContourResampleFilter, NestedContoursKeepTheirDistanceAtAnySpacing)
     filter->SetMinimumSpacing(0.5 * spacing);
     filter->Update();
     const ContourStack & output = *filter->GetOutput();
-    const auto &         contours = output.GetSlices()[0].contours;
-    const auto           least = [&](int a, int b) {
-      double distance = 1e9;
-      for (const auto & [from, to] : { std::pair{ a, b }, std::pair{ b, a } })
-      {
-        const auto polygon = PlanePoints(output, contours[static_cast<std::size_t>(to)]);
-        for (const Vector2 & q : PlanePoints(output, contours[static_cast<std::size_t>(from)]))
-        {
-          distance = std::min(distance, DistanceTo(q, polygon));
-        }
-      }
-      return distance;
-    };
-    EXPECT_GE(least(0, 1), 0.8);
-    EXPECT_GE(least(1, 2), 0.8);
-    EXPECT_GE(least(2, 3), 0.8 * (1.0 - 1e-9));
+    EXPECT_GE(LeastDistance(output, 0, 1), 0.8);
+    EXPECT_GE(LeastDistance(output, 1, 2), 0.8);
+    EXPECT_GE(LeastDistance(output, 2, 3), 0.8 * (1.0 - 1e-9));
+  }
+}
+
+TEST(ContourResampleFilter, InnerContoursOfOneLayerKeepTheirDistanceFromEachOther)
+{
+  // Two halves of a spongy layer, 0.9 mm apart, wavy where they face each other.
+  const auto half = [](double side) {
+    Polygon loop;
+    for (int i = 0; i <= 200; ++i)
+    {
+      const double y = -8.0 + 0.08 * i;
+      loop.push_back(Vector2(side * 0.45 + 0.5 * std::sin(y), y));
+    }
+    loop.push_back(Vector2(side * 9.0, 8.0));
+    loop.push_back(Vector2(side * 9.0, -8.0));
+    if (side > 0)
+    {
+      std::reverse(loop.begin(), loop.end());
+    }
+    return loop;
+  };
+  for (const double spacing : { 1.0, 3.0, 6.0 })
+  {
+    auto filter = Resampler(OneSlice({ Ellipse(20, 14, 400), half(-1.0), half(1.0) }, { 0, 1, 1 }), spacing);
+    filter->SetMinimumSpacing(0.5 * spacing);
+    filter->SetMinimumLayerDistance(0.7);
+    filter->Update();
+    EXPECT_GE(LeastDistance(*filter->GetOutput(), 1, 2), 0.7 * (1.0 - 1e-9)) << spacing;
   }
 }
 
