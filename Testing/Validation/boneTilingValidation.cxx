@@ -8,6 +8,7 @@
 #include "boneMeshIO.h"
 #include "boneQualityMeasures.h"
 #include "boneRandomStack.h"
+#include "boneSlabTopology.h"
 #include "boneStackTopology.h"
 #include "boneSurfaceAudit.h"
 
@@ -64,13 +65,17 @@ main(int argc, char * argv[])
               << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
               << "\nparted " << report.partedGroups << "\npatches " << report.patches << "\nleast_angle " << least
               << "\nmean_angle " << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
-    constexpr double pixel = 0.2; // mm
+    const double pixel = random ? 0.05 : 0.2; // mm; random bodies have walls thinner than bones
     for (int region = 1; region <= 3; ++region)
     {
-      const bone::StackTopology given(*stack, region, pixel);
+      const auto differing = bone::FindSlabsOfOtherTopology(mesh, *stack, report.correspondence, region, pixel);
       std::cout << "mesh_topology_" << region << ' ' << bone::TopologyOfMesh(mesh, region) << "\nstack_topology_"
-                << region << ' ' << given.topology << "\nhandles_" << region << ' ' << given.handlesWithoutSpecks
-                << '\n';
+                << region << ' ' << bone::TopologyOfStack(*stack, region, pixel) << "\ndiffering_slabs_" << region
+                << ' ' << differing.size() << '\n';
+      for (const std::string & line : differing)
+      {
+        std::cerr << line << '\n';
+      }
     }
     bone::WriteMeshArrays(mesh, argv[argc - 1]);
   }

@@ -3,9 +3,10 @@
  *=========================================================================*/
 #include "boneSlabFilling.h"
 
-#include "boneConstrainedTriangulation.h"
+#include "boneLayerLinks.h"
 #include "bonePlanarOverlay.h"
 #include "bonePredicates.h"
+#include "boneSlabSide.h"
 #include "boneSlabSurface.h"
 #include "boneSteinerCollapse.h"
 
@@ -17,6 +18,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 namespace bone
 {
@@ -24,9 +26,11 @@ namespace tiling
 {
 namespace
 {
-constexpr int    Corners = 4;
 constexpr int    OverlayTries = 6;
-constexpr double ShiftGain = 1.5;         ///< a shift leans upright walls too, so it must pay
+constexpr double ShiftGain = 1.5;   ///< a shift leans upright walls too, so it must pay
+constexpr double LinkShare = 0.15;  ///< of a part's area, by which two parts of a layer belong together
+constexpr double SmallShift = 0.03; // mm
+constexpr int    SmallShifts = 3;
 constexpr int    UsualShifts = 2;         ///< looked at always; others where these do not do
 constexpr double LeastVolume = 1e-11;     ///< mm^3, of a cell that is not thin
 constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
@@ -34,129 +38,9 @@ constexpr double NearPoints = 0.1;        // mm
 constexpr double PartPoints = 0.4;        // mm
 constexpr double Shift = 1e-5;            // mm, parts vertices of the two slices that lie over each other
 
-/** The triangulation of a slice and of what is outside the bone. */
-struct Side
-{
-  Vector2          shift{ Vector2::Zero() }; ///< subtracted from the slice's coordinates
-  BoxTriangulation box;
-  std::vector<int> poolId; ///< of each vertex; -1 for the box
-  std::vector<int> region; ///< of each triangle; 0 outside
-  std::vector<int> group;  ///< of each triangle; -1 outside
-  std::vector<int> piece;  ///< of each triangle; -1 outside
-};
-
-struct Bounds
-{
-  Vector2 low, high;
-};
-
-/** A box around all contours, those of the upper slice moved by -shift. */
-Bounds
-BoundsOf(const VertexPool &           pool,
-         const std::vector<Section> & lower,
-         const std::vector<Section> & upper,
-         const Vector2 &              shift)
-{
-  Bounds bounds{ Vector2::Constant(std::numeric_limits<double>::max()),
-                 Vector2::Constant(std::numeric_limits<double>::lowest()) };
-  for (const auto * sections : { &lower, &upper })
-  {
-    for (const Section & section : *sections)
-    {
-      for (int v : section.walks[0])
-      {
-        const Vector2 q = sections == &upper ? Vector2(pool.plane[v] - shift) : pool.plane[v];
-        bounds.low = bounds.low.cwiseMin(q);
-        bounds.high = bounds.high.cwiseMax(q);
-      }
-    }
-  }
-  const double margin = 0.2 * (bounds.high - bounds.low).norm() + 1.0;
-  bounds.low.array() -= margin;
-  bounds.high.array() += margin;
-  return bounds;
-}
-
-Side
-MakeSide(const VertexPool &           pool,
-         const std::vector<Section> & sections,
-         const std::vector<int> &     groupOf,
-         const Bounds &               bounds,
-         const Vector2 &              shift)
-{
-  Side side;
-  side.shift = shift;
-  ConstrainedTriangulation outside(bounds.low, bounds.high);
-  std::map<int, int>       local;
-  side.poolId.assign(Corners, -1);
-  for (const Section & section : sections)
-  {
-    std::vector<const Walk *> loops{ &section.walks[0] };
-    for (const Walk & hole : section.holes)
-    {
-      loops.push_back(&hole);
-    }
-    for (const Walk * loop : loops)
-    {
-      for (int v : *loop)
-      {
-        const int id = outside.Insert(pool.plane[v] - shift);
-        if (id != static_cast<int>(side.poolId.size()))
-        {
-          throw std::runtime_error("contours touch");
-        }
-        local[v] = id;
-        side.poolId.push_back(v);
-      }
-    }
-    for (const Walk * loop : loops)
-    {
-      for (std::size_t i = 0; i < loop->size(); ++i)
-      {
-        outside.Constrain(local[(*loop)[i]], local[(*loop)[(i + 1) % loop->size()]]);
-      }
-    }
-  }
-  side.box.points = outside.GetPoints();
-  const std::vector<char> inside = outside.Inside();
-  for (std::size_t t = 0; t < inside.size(); ++t)
-  {
-    if (!inside[t])
-    {
-      side.box.triangles.push_back(outside.GetTriangles()[t].vertices);
-      side.region.push_back(0);
-      side.group.push_back(-1);
-      side.piece.push_back(-1);
-    }
-  }
-  for (std::size_t s = 0; s < sections.size(); ++s)
-  {
-    for (const PlanarTriangle & triangle : SectionTriangles(sections[s]))
-    {
-      std::array<int, 3> vertices;
-      for (int i = 0; i < 3; ++i)
-      {
-        const int  v = triangle.vertices[i];
-        const auto added = local.emplace(v, static_cast<int>(side.poolId.size()));
-        if (added.second)
-        {
-          side.poolId.push_back(v);
-          side.box.points.push_back(pool.plane[v] - shift);
-        }
-        vertices[i] = added.first->second;
-      }
-      side.box.triangles.push_back(vertices);
-      side.region.push_back(triangle.region);
-      side.group.push_back(groupOf[s]);
-      side.piece.push_back(static_cast<int>(s));
-    }
-  }
-  return side;
-}
-
 /** Whether a vertex lies inside one region and may be moved a little without turning a triangle over. */
 bool
-IsInner(const Side & side, int vertex)
+IsInner(const SlabSide & side, int vertex)
 {
   int region = 0;
   for (std::size_t t = 0; t < side.box.triangles.size(); ++t)
@@ -184,16 +68,17 @@ IsInner(const Side & side, int vertex)
 }
 
 PlanarOverlay
-OverlaySides(const Side & lower, const Side & upper)
+OverlaySides(const SlabSide & lower, const SlabSide & upper)
 {
   // Medial axes of both slices often meet in nearly the same point, whose fans of triangles would cross each other in a
   // knot of that size.
   BoxTriangulation parted = upper.box;
-  for (std::size_t v = Corners; v < parted.points.size(); ++v)
+  for (std::size_t v = SlabSide::Corners; v < parted.points.size(); ++v)
   {
-    const bool near = std::any_of(lower.box.points.begin() + Corners, lower.box.points.end(), [&](const Vector2 & q) {
-      return (q - upper.box.points[v]).squaredNorm() < NearPoints * NearPoints;
-    });
+    const bool near =
+      std::any_of(lower.box.points.begin() + SlabSide::Corners, lower.box.points.end(), [&](const Vector2 & q) {
+        return (q - upper.box.points[v]).squaredNorm() < NearPoints * NearPoints;
+      });
     if (near && IsInner(upper, static_cast<int>(v)))
     {
       parted.points[v] += PartPoints * Vector2(0.8, 0.6);
@@ -202,7 +87,7 @@ OverlaySides(const Side & lower, const Side & upper)
   for (int attempt = 1;; ++attempt)
   {
     BoxTriangulation moved = parted;
-    for (std::size_t v = Corners; v < moved.points.size(); ++v)
+    for (std::size_t v = SlabSide::Corners; v < moved.points.size(); ++v)
     {
       // No two vertices by the same amount, lest edges of both slices stay collinear.
       const double angle = 2.399963 * static_cast<double>(v) * attempt;
@@ -281,7 +166,11 @@ Joined(const Group & group, const std::set<std::array<int, 2>> & links)
 class SlabFiller
 {
 public:
-  SlabFiller(const ContourStack & stack, const Side & lower, const Side & upper, int slice, const VertexPool & pool)
+  SlabFiller(const ContourStack & stack,
+             const SlabSide &     lower,
+             const SlabSide &     upper,
+             int                  slice,
+             const VertexPool &   pool)
     : m_Stack(stack)
     , m_Sides{ &lower, &upper }
     , m_Slice(slice)
@@ -304,6 +193,17 @@ public:
       }
     }
     return common;
+  }
+
+  std::set<LayerLink>
+  Links() const
+  {
+    const auto &below = *m_Sides[0], &above = *m_Sides[1];
+    return FindLayerLinks({ { &below.box, &above.box } },
+                          { { &below.region, &above.region } },
+                          { { &below.group, &above.group } },
+                          m_Overlay,
+                          LinkShare);
   }
 
   /** The groups with members on both slices that overlap does not join into one. */
@@ -618,7 +518,7 @@ private:
   }
 
   const ContourStack & m_Stack;
-  const Side *         m_Sides[2];
+  const SlabSide *     m_Sides[2];
   int                  m_Slice;
   const VertexPool &   m_Pool;
   PlanarOverlay        m_Overlay;
@@ -680,68 +580,162 @@ CandidateShifts(const VertexPool &           pool,
 /** The slices' triangulations at a shift and their overlay. */
 struct Alignment
 {
-  Side                        below, above;
+  SlabSide                    below, above;
   std::unique_ptr<SlabFiller> filler;
   std::vector<int>            parted;
+  std::ptrdiff_t              lost{ 0 }; ///< parts of layers that overlap where no slice is moved, and do not here
   double                      common{ 0.0 };
 
   bool
   IsBetterThan(const Alignment & other) const
   {
-    return parted.size() != other.parted.size() ? parted.size() < other.parted.size() : common > other.common;
+    return std::make_tuple(parted.size(), lost, -common) <
+           std::make_tuple(other.parted.size(), other.lost, -other.common);
   }
 };
 
-/** The slices laid over each other at the shifts that may do, best first; `reason` says why others fail. */
-std::vector<std::unique_ptr<Alignment>>
-FindAlignments(const ContourStack &         stack,
-               const std::vector<Section> & lower,
-               const std::vector<Section> & upper,
-               const std::vector<Group> &   groups,
-               const VertexPool &           pool,
-               std::string &                reason)
+/** Lays the slices over each other and fills the space between them. */
+class Aligner
 {
-  std::vector<int> lowerGroup(lower.size(), -1), upperGroup(upper.size(), -1);
-  for (std::size_t g = 0; g < groups.size(); ++g)
+public:
+  Aligner(const ContourStack &         stack,
+          const std::vector<Section> & lower,
+          const std::vector<Section> & upper,
+          const std::vector<Group> &   groups,
+          const VertexPool &           pool)
+    : m_Stack(stack)
+    , m_Lower(lower)
+    , m_Upper(upper)
+    , m_Groups(groups)
+    , m_Pool(pool)
+    , m_LowerGroup(lower.size(), -1)
+    , m_UpperGroup(upper.size(), -1)
+    , m_Slice((lower.empty() ? upper : lower).front().slice)
   {
-    for (int i : groups[g].lower)
+    for (std::size_t g = 0; g < groups.size(); ++g)
     {
-      lowerGroup[i] = static_cast<int>(g);
-    }
-    for (int i : groups[g].upper)
-    {
-      upperGroup[i] = static_cast<int>(g);
+      for (int i : groups[g].lower)
+      {
+        m_LowerGroup[i] = static_cast<int>(g);
+      }
+      for (int i : groups[g].upper)
+      {
+        m_UpperGroup[i] = static_cast<int>(g);
+      }
     }
   }
-  const int                               slice = (lower.empty() ? upper : lower).front().slice;
-  std::vector<std::unique_ptr<Alignment>> alignments;
-  int                                     tried = 0;
-  for (const Vector2 & shift : CandidateShifts(pool, lower, upper, groups))
+
+  SlabFilling
+  Run(double low, double high)
   {
-    if (tried++ >= UsualShifts && !alignments.empty() && alignments.front()->parted.empty())
+    this->FindAlignments();
+    for (std::size_t a = 0; a < m_Alignments.size(); ++a)
     {
-      break;
+      if (this->Fill(*m_Alignments[a], low, high))
+      {
+        return *m_Filling;
+      }
+      // Vertices right above each other give flat cells. A small shift parts them and keeps what the next would lose.
+      const bool dear = a + 1 < m_Alignments.size() && m_Alignments[a + 1]->lost > m_Alignments[a]->lost;
+      for (int i = 1; dear && i <= SmallShifts; ++i)
+      {
+        const auto moved = this->Align(m_Alignments[a]->above.shift + i * SmallShift * Vector2(0.8, 0.6));
+        if (moved && moved->lost <= m_Alignments[a]->lost && this->Fill(*moved, low, high))
+        {
+          return *m_Filling;
+        }
+      }
     }
+    if (m_Filling)
+    {
+      return *m_Filling;
+    }
+    throw std::runtime_error("slice " + std::to_string(m_Slice) + ": the space next to it cannot be filled, " +
+                             m_Reason + "; use a smaller slice step");
+  }
+
+private:
+  /** Alignments at the shifts that may do, best first. */
+  void
+  FindAlignments()
+  {
+    int tried = 0;
+    for (const Vector2 & shift : CandidateShifts(m_Pool, m_Lower, m_Upper, m_Groups))
+    {
+      if (tried++ >= UsualShifts && !m_Alignments.empty() && m_Alignments.front()->parted.empty())
+      {
+        break;
+      }
+      if (auto alignment = this->Align(shift))
+      {
+        m_Alignments.push_back(std::move(alignment));
+        std::stable_sort(
+          m_Alignments.begin(), m_Alignments.end(), [](const auto & a, const auto & b) { return a->IsBetterThan(*b); });
+      }
+    }
+  }
+
+  /** Null where that cannot be; m_Reason then says why. */
+  std::unique_ptr<Alignment>
+  Align(const Vector2 & shift)
+  {
     auto alignment = std::make_unique<Alignment>();
     try
     {
-      const Bounds bounds = BoundsOf(pool, lower, upper, shift);
-      alignment->below = MakeSide(pool, lower, lowerGroup, bounds, Vector2::Zero());
-      alignment->above = MakeSide(pool, upper, upperGroup, bounds, shift);
-      alignment->filler = std::make_unique<SlabFiller>(stack, alignment->below, alignment->above, slice, pool);
-      alignment->parted = alignment->filler->PartedGroups(groups);
-      alignment->common = alignment->filler->CommonArea() / (shift.isZero() ? 1.0 : ShiftGain);
-      alignments.push_back(std::move(alignment));
+      const SlabBounds bounds = BoundsOf(m_Pool, m_Lower, m_Upper, shift);
+      alignment->below = MakeSide(m_Pool, m_Lower, m_LowerGroup, bounds, Vector2::Zero());
+      alignment->above = MakeSide(m_Pool, m_Upper, m_UpperGroup, bounds, shift);
+      alignment->filler = std::make_unique<SlabFiller>(m_Stack, alignment->below, alignment->above, m_Slice, m_Pool);
     }
     catch (const std::runtime_error & error)
     {
-      reason = error.what();
+      m_Reason = error.what();
+      return nullptr;
     }
-    std::stable_sort(
-      alignments.begin(), alignments.end(), [](const auto & a, const auto & b) { return a->IsBetterThan(*b); });
+    alignment->parted = alignment->filler->PartedGroups(m_Groups);
+    alignment->common = alignment->filler->CommonArea() / (shift.isZero() ? 1.0 : ShiftGain);
+    const std::set<LayerLink> links = alignment->filler->Links();
+    m_Unmoved = shift.isZero() ? links : m_Unmoved;
+    alignment->lost = std::count_if(
+      m_Unmoved.begin(), m_Unmoved.end(), [&links](const LayerLink & link) { return links.count(link) == 0; });
+    return alignment;
   }
-  return alignments;
-}
+
+  /** Whether m_Filling now is one without flat cells; else it may be one with such. */
+  bool
+  Fill(const Alignment & alignment, double low, double high)
+  {
+    try
+    {
+      bool        thin = false;
+      SlabFilling filling = alignment.filler->Run(low, high, thin);
+      filling.parted = alignment.parted;
+      if (!thin || !m_Filling)
+      {
+        m_Filling = std::move(filling);
+      }
+      return !thin;
+    }
+    catch (const std::runtime_error & error)
+    {
+      m_Reason = error.what();
+      return false;
+    }
+  }
+
+  const ContourStack &                    m_Stack;
+  const std::vector<Section> &            m_Lower;
+  const std::vector<Section> &            m_Upper;
+  const std::vector<Group> &              m_Groups;
+  const VertexPool &                      m_Pool;
+  std::vector<int>                        m_LowerGroup;
+  std::vector<int>                        m_UpperGroup;
+  int                                     m_Slice;
+  std::vector<std::unique_ptr<Alignment>> m_Alignments;
+  std::set<LayerLink>                     m_Unmoved; ///< that overlap where no slice is moved
+  std::optional<SlabFilling>              m_Filling;
+  std::string                             m_Reason;
+};
 } // namespace
 
 SlabFilling
@@ -753,35 +747,7 @@ FillSlab(const ContourStack &         stack,
          double                       upperHeight,
          const VertexPool &           pool)
 {
-  std::string                reason;
-  std::optional<SlabFilling> usable;
-  for (const auto & alignment : FindAlignments(stack, lower, upper, groups, pool, reason))
-  {
-    try
-    {
-      bool        thin = false;
-      SlabFilling filling = alignment->filler->Run(lowerHeight, upperHeight, thin);
-      filling.parted = alignment->parted;
-      if (!thin)
-      {
-        return filling;
-      }
-      if (!usable)
-      {
-        usable = std::move(filling);
-      }
-    }
-    catch (const std::runtime_error & error)
-    {
-      reason = error.what();
-    }
-  }
-  if (usable)
-  {
-    return *usable;
-  }
-  throw std::runtime_error("slice " + std::to_string((lower.empty() ? upper : lower).front().slice) +
-                           ": the space next to it cannot be filled, " + reason + "; use a smaller slice step");
+  return Aligner(stack, lower, upper, groups, pool).Run(lowerHeight, upperHeight);
 }
 } // namespace tiling
 } // namespace bone

@@ -5,6 +5,7 @@
 
 #include "boneMeshValidator.h"
 #include "boneRandomStack.h"
+#include "boneSlabTopology.h"
 #include "boneSurfaceAudit.h"
 
 #include <gtest/gtest.h>
@@ -106,6 +107,10 @@ TEST_P(RandomStackTest, IsTiledWithAllItsContoursAndLayers)
   for (int least = 1; least <= 3; ++least)
   {
     EXPECT_EQ(bone::PinchedPoints(mesh, least), 0) << "regions from " << least << " inward";
+    for (const auto & line : bone::FindSlabsOfOtherTopology(mesh, *stack, report.correspondence, least, 0.05))
+    {
+      ADD_FAILURE() << line;
+    }
   }
   // Every contour's points are there, but for those of holes that were closed because they are voids.
   std::set<std::array<double, 3>> points;
@@ -123,6 +128,34 @@ TEST_P(RandomStackTest, IsTiledWithAllItsContoursAndLayers)
     }
   }
   EXPECT_EQ(missing, report.holesLeftOut);
+}
+
+TEST(RandomStack, HasHolesAndThreeLayersInTheirOrder)
+{
+  int holes = 0, innermost = 0;
+  for (unsigned seed = 0; seed < 20; ++seed)
+  {
+    const auto stack = bone::RandomStack(seed).Make();
+    for (const auto & slice : stack->GetSlices())
+    {
+      for (const auto & contour : slice.contours)
+      {
+        std::vector<bone::Vector2> polygon;
+        for (const auto & p : contour.points)
+        {
+          polygon.emplace_back(p.x(), p.y());
+        }
+        if (contour.region == bone::Region::Outside || contour.region == bone::Region::Medullary)
+        {
+          EXPECT_EQ(bone::SignedArea(polygon) > 0, contour.region == bone::Region::Medullary) << "seed " << seed;
+        }
+        holes += contour.region == bone::Region::Outside;
+        innermost += contour.region == bone::Region::Medullary;
+      }
+    }
+  }
+  EXPECT_GT(holes, 10);
+  EXPECT_GT(innermost, 100);
 }
 
 TEST(ContourTiler, RenumberingChangesNothingButTheNumbering)
@@ -151,4 +184,6 @@ TEST(ContourTiler, TurningTheStackKeepsTheNumberOfCells)
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomStackTest, testing::Range(0u, 8u));
+// Bodies whose parts once came apart where a slab's slices were moved against each other.
+INSTANTIATE_TEST_SUITE_P(Moved, RandomStackTest, testing::Values(11u, 155u, 170u));
 } // namespace

@@ -146,12 +146,11 @@ private:
       {
         polygon.emplace_back(p.x(), p.y());
       }
-      const bool hole = SignedArea(polygon) > 0;
+      const bool hole = SignedArea(polygon) < 0;
       if (polygon.size() < 4)
       {
         continue;
       }
-      std::reverse(contour.points.begin(), contour.points.end());
       contour.layer = hole ? std::max(0, layer - 1) : layer;
       contour.region = hole ? layer : layer + 1;
       contour.id = static_cast<int>(slice.contours.size());

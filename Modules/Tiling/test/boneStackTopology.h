@@ -31,19 +31,20 @@ operator<<(std::ostream & os, const BodyTopology & topology);
 /** The regions from `least` inward of a stack of contours, each slice thickened to the middle of its neighbours: two
  * slices are joined where they overlap, and nowhere else. Of the whole body (least = 1) voids are filled first, as the
  * tiling does. Decided on pixels of the given size (mm). */
-struct StackTopology
-{
-  BodyTopology topology;
-  /** Handles that are left where, of the parts in which two pieces overlap, those under 5 % of the largest do not
-   * count: specks, where a thin wall leans. */
-  int handlesWithoutSpecks{ 0 };
-
-  StackTopology(const ContourStack & stack, int least, double pixel);
-};
+BodyTopology
+TopologyOfStack(const ContourStack & stack, int least, double pixel);
 
 /** The regions from `least` inward of a mesh. */
 BodyTopology
 TopologyOfMesh(const MeshArrays & mesh, int least);
+
+/** Euler characteristic of some tetrahedra of a mesh with their faces. */
+long
+EulerOfCells(const MeshArrays & mesh, const std::vector<std::size_t> & chosen);
+
+/** Number of parts that tuples of points join; only points of tuples count. */
+int
+CountJoined(const std::vector<std::vector<IdType>> & joined, std::size_t points);
 } // namespace bone
 
 #endif

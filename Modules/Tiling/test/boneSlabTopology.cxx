@@ -1,0 +1,294 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSlabTopology.h"
+
+#include "boneStackPixels.h"
+#include "boneStackTopology.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+struct Counts
+{
+  int  components;
+  long euler;
+
+  bool
+  operator==(const Counts & other) const
+  {
+    return components == other.components && euler == other.euler;
+  }
+};
+
+/** The parts of a slice that lie in the regions from `least` inward, numbered from 1. */
+struct Pieces
+{
+  std::vector<int> label;      ///< of each pixel, 0: none
+  std::vector<int> periosteal; ///< of each piece: id of the periosteal contour it lies in
+  long             euler{ 0 };
+};
+
+Pieces
+PiecesOf(const ContourStack & stack, std::size_t slice, int least, const PixelGrid & grid, const unsigned char * filled)
+{
+  const auto contours = PlaneContoursOf(stack, stack.GetSlices()[slice]);
+  Pieces     pieces;
+  pieces.label.assign(static_cast<std::size_t>(grid.nx) * grid.ny, 0);
+  std::vector<int> pieceOf(contours.size(), 0), outermost(contours.size(), 0);
+  for (std::size_t c = 0; c < contours.size(); ++c)
+  {
+    const PlaneContour & contour = contours[c];
+    const int            around = contour.parent < 0 ? 0 : pieceOf[contour.parent];
+    const bool           begins = contour.parent < 0 || contours[contour.parent].region == Region::Outside;
+    outermost[c] = begins ? contour.id : outermost[contour.parent];
+    if (contour.region < least)
+    {
+      std::vector<int> hole(pieces.label.size(), 0);
+      FillPolygon(grid, contour.polygon, 1, hole);
+      bool closed = around == 0;
+      for (std::size_t i = 0; i < hole.size() && !closed; ++i)
+      {
+        closed = hole[i] != 0 && filled[i] != 0;
+      }
+      pieceOf[c] = closed ? around : 0;
+      pieces.euler -= closed ? 0 : 1;
+    }
+    else if (around > 0)
+    {
+      pieceOf[c] = around;
+    }
+    else
+    {
+      pieces.periosteal.push_back(outermost[c]);
+      pieceOf[c] = static_cast<int>(pieces.periosteal.size());
+      ++pieces.euler;
+    }
+    FillPolygon(grid, contour.polygon, pieceOf[c], pieces.label);
+  }
+  return pieces;
+}
+
+/** Where a piece below and one above overlap. */
+struct Overlap
+{
+  int  parts{ 0 };
+  long euler{ 0 };
+};
+
+std::map<std::array<int, 2>, Overlap>
+FindOverlaps(const Pieces & below, const Pieces & above, std::ptrdiff_t nx)
+{
+  std::map<std::array<int, 2>, Overlap> overlaps;
+  std::vector<char>                     seen(below.label.size(), 0);
+  std::vector<std::ptrdiff_t>           front;
+  for (std::size_t seed = 0; seed < seen.size(); ++seed)
+  {
+    const std::array<int, 2> pair{ { below.label[seed], above.label[seed] } };
+    const auto               inside = [&](std::ptrdiff_t i) {
+      return pair[0] != 0 && pair[1] != 0 && below.label[i] == pair[0] && above.label[i] == pair[1];
+    };
+    if (seen[seed] || !inside(static_cast<std::ptrdiff_t>(seed)))
+    {
+      continue;
+    }
+    Overlap & overlap = overlaps[pair];
+    ++overlap.parts;
+    front.assign(1, static_cast<std::ptrdiff_t>(seed));
+    seen[seed] = 1;
+    while (!front.empty())
+    {
+      const std::ptrdiff_t i = front.back();
+      front.pop_back();
+      const bool x = inside(i + 1), y = inside(i + nx), xy = x && y && inside(i + nx + 1);
+      overlap.euler += 1 - x - y + xy;
+      for (const std::ptrdiff_t next : { i - 1, i + 1, i - nx, i + nx })
+      {
+        if (!seen[next] && inside(next)) // the rim is empty
+        {
+          seen[next] = 1;
+          front.push_back(next);
+        }
+      }
+    }
+  }
+  return overlaps;
+}
+
+/** Group of each piece below, then above: of all the pieces of bone that correspond; -1 of one that is not named. */
+std::vector<int>
+GroupsOf(const std::vector<ContourCorrespondence::Group> & groups, const Pieces & below, const Pieces & above)
+{
+  std::vector<int> result;
+  const auto       add = [&](const Pieces & pieces, std::vector<int> ContourCorrespondence::Group::*side) {
+    for (const int id : pieces.periosteal)
+    {
+      const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto & group) {
+        return std::count(std::begin(group.*side), std::end(group.*side), id) > 0;
+      });
+      result.push_back(found == groups.end() ? -1 : static_cast<int>(found - groups.begin()));
+    }
+  };
+  add(below, &ContourCorrespondence::Group::lower);
+  add(above, &ContourCorrespondence::Group::upper);
+  return result;
+}
+
+/** Number of pieces that overlap none. */
+int
+CountAlone(const std::vector<std::vector<IdType>> & joined, std::size_t pieces)
+{
+  std::vector<char> alone(pieces, 1);
+  for (const auto & set : joined)
+  {
+    for (const IdType i : set)
+    {
+      alone[i] = alone[i] != 0 && set.size() == 1;
+    }
+  }
+  return static_cast<int>(std::count(alone.begin(), alone.end(), 1));
+}
+
+std::vector<Counts>
+AllowedCounts(const Pieces &                                    below,
+              const Pieces &                                    above,
+              const std::vector<ContourCorrespondence::Group> & groups,
+              std::ptrdiff_t                                    nx)
+{
+  const std::vector<int>           group = GroupsOf(groups, below, above);
+  const auto                       lower = static_cast<int>(below.periosteal.size());
+  std::vector<std::vector<IdType>> joined;
+  for (std::size_t i = 0; i < group.size(); ++i)
+  {
+    joined.push_back({ static_cast<IdType>(i) });
+  }
+  long byParts = below.euler + above.euler, byPairs = byParts;
+  for (const auto & [pair, overlap] : FindOverlaps(below, above, nx))
+  {
+    const int i = pair[0] - 1, j = lower + pair[1] - 1;
+    if (group[i] == group[j])
+    {
+      joined.push_back({ i, j });
+      byParts -= overlap.euler;
+      byPairs -= 1 - (overlap.parts - overlap.euler);
+    }
+  }
+  const int components = CountJoined(joined, group.size());
+  const int alone = CountAlone(joined, group.size());
+  // Joined also where only the pieces of bone around them correspond.
+  for (std::size_t i = 0; i < group.size(); ++i)
+  {
+    for (std::size_t j = lower; j < group.size() && static_cast<int>(i) < lower; ++j)
+    {
+      if (group[i] == group[j])
+      {
+        joined.push_back({ static_cast<IdType>(i), static_cast<IdType>(j) });
+      }
+    }
+  }
+  const int           fewer = CountJoined(joined, group.size());
+  std::vector<Counts> allowed;
+  for (const long euler : { byParts, byPairs })
+  {
+    for (int joins = 0; joins <= components - fewer; ++joins)
+    {
+      for (int flat = 0; flat <= alone; ++flat)
+      {
+        allowed.push_back({ components - joins - flat, euler - joins - flat });
+      }
+    }
+  }
+  return allowed;
+}
+
+/** Cells from `least` inward by slab, the end before the first slice included. */
+std::vector<std::vector<std::size_t>>
+CellsOfSlabs(const MeshArrays & mesh, const ContourStack & stack, int least)
+{
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < stack.GetSlices().size(); ++k)
+  {
+    heights.push_back(stack.GetHeight(k));
+  }
+  std::vector<std::vector<std::size_t>> cells(heights.size() + 1);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    if (mesh.region[t] >= least)
+    {
+      Vector3 sum = Vector3::Zero();
+      for (const IdType p : mesh.tetrahedra[t])
+      {
+        sum += mesh.points[p];
+      }
+      const double height = 0.25 * sum.dot(stack.GetNormal());
+      cells[std::upper_bound(heights.begin(), heights.end(), height) - heights.begin()].push_back(t);
+    }
+  }
+  return cells;
+}
+
+Counts
+CountsOf(const MeshArrays & mesh, const std::vector<std::size_t> & cells)
+{
+  std::vector<std::vector<IdType>> tuples;
+  for (const std::size_t t : cells)
+  {
+    tuples.emplace_back(mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
+  }
+  return { CountJoined(tuples, mesh.points.size()), EulerOfCells(mesh, cells) };
+}
+} // namespace
+
+std::vector<std::string>
+FindSlabsOfOtherTopology(const MeshArrays &            mesh,
+                         const ContourStack &          stack,
+                         const ContourCorrespondence & correspondence,
+                         int                           least,
+                         double                        pixel)
+{
+  const PixelGrid          grid = PixelGridOf(stack, pixel);
+  int                      outside = 0;
+  const auto               filled = PixelsInside(stack, least, pixel, outside);
+  const std::ptrdiff_t     area = static_cast<std::ptrdiff_t>(grid.nx) * grid.ny;
+  const auto               cells = CellsOfSlabs(mesh, stack, least);
+  const auto               slices = static_cast<int>(stack.GetSlices().size());
+  Pieces                   below;
+  std::vector<std::string> differing;
+  below.label.assign(area, 0);
+  for (int k = 0; k <= slices; ++k)
+  {
+    Pieces above;
+    above.label.assign(area, 0);
+    if (k < slices)
+    {
+      above = PiecesOf(stack, k, least, grid, filled->GetBufferPointer() + (k + 1) * area);
+    }
+    const auto   given = correspondence.slabs.find(k - 1);
+    const auto   groups = given == correspondence.slabs.end() ? decltype(given->second){} : given->second;
+    const Counts found = CountsOf(mesh, cells[k]);
+    const auto   allowed = AllowedCounts(below, above, groups, grid.nx);
+    const bool   cut = cells[k].empty() && ((k == 0 && stack.GetOpenStart()) || (k == slices && stack.GetOpenEnd()));
+    if (!cut && std::find(allowed.begin(), allowed.end(), found) == allowed.end())
+    {
+      std::ostringstream line;
+      line << "region " << least << ", slices " << k - 1 << " to " << k << ": components " << found.components
+           << ", Euler characteristic " << found.euler << "; of the stack";
+      for (const Counts & one : allowed)
+      {
+        line << ' ' << one.components << ',' << one.euler;
+      }
+      differing.push_back(line.str());
+    }
+    below = std::move(above);
+  }
+  return differing;
+}
+} // namespace bone
