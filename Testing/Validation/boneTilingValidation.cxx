@@ -65,7 +65,7 @@ main(int argc, char * argv[])
               << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
               << "\nparted " << report.partedGroups << "\npatches " << report.patches << "\nleast_angle " << least
               << "\nmean_angle " << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
-    const double pixel = random ? 0.05 : 0.2; // mm; random bodies have walls thinner than bones
+    const double pixel = random ? 0.1 : 0.2; // mm; random bodies have walls thinner than bones
     for (int region = 1; region <= 3; ++region)
     {
       const auto differing = bone::FindSlabsOfOtherTopology(mesh, *stack, report.correspondence, region, pixel);

@@ -107,7 +107,7 @@ TEST_P(RandomStackTest, IsTiledWithAllItsContoursAndLayers)
   for (int least = 1; least <= 3; ++least)
   {
     EXPECT_EQ(bone::PinchedPoints(mesh, least), 0) << "regions from " << least << " inward";
-    for (const auto & line : bone::FindSlabsOfOtherTopology(mesh, *stack, report.correspondence, least, 0.05))
+    for (const auto & line : bone::FindSlabsOfOtherTopology(mesh, *stack, report.correspondence, least, 0.1))
     {
       ADD_FAILURE() << line;
     }

@@ -17,6 +17,8 @@ namespace bone
 {
 namespace
 {
+constexpr int MostFiner = 8; ///< pixels, where the first give other counts
+
 struct Counts
 {
   int  components;
@@ -37,12 +39,59 @@ struct Pieces
   long             euler{ 0 };
 };
 
-Pieces
-PiecesOf(const ContourStack & stack, std::size_t slice, int least, const PixelGrid & grid, const unsigned char * filled)
+/** Ids of each slice's contours that bound no hole in the regions from `least` inward because it is a void of the whole
+ * body, which the tiling fills. */
+std::vector<std::set<int>>
+ClosedHoles(const ContourStack & stack, int least, double pixel)
 {
-  const auto contours = PlaneContoursOf(stack, stack.GetSlices()[slice]);
-  Pieces     pieces;
+  std::vector<std::set<int>> closed(stack.GetSlices().size());
+  if (least > 1)
+  {
+    return closed;
+  }
+  const PixelGrid       grid = PixelGridOf(stack, pixel);
+  int                   outside = 0;
+  const auto            filled = PixelsInside(stack, least, pixel, outside);
+  const std::ptrdiff_t  area = static_cast<std::ptrdiff_t>(grid.nx) * grid.ny;
+  const unsigned char * slice = filled->GetBufferPointer();
+  for (std::size_t k = 0; k < closed.size(); ++k)
+  {
+    slice += area;
+    for (const PlaneContour & contour : PlaneContoursOf(stack, stack.GetSlices()[k]))
+    {
+      if (contour.region == Region::Outside)
+      {
+        std::vector<int> hole(area, 0);
+        FillPolygon(grid, contour.polygon, 1, hole);
+        bool any = false;
+        for (std::ptrdiff_t i = 0; i < area && !any; ++i)
+        {
+          any = hole[i] != 0 && slice[i] != 0;
+        }
+        if (any)
+        {
+          closed[k].insert(contour.id);
+        }
+      }
+    }
+  }
+  return closed;
+}
+
+Pieces
+PiecesOf(const ContourStack &               stack,
+         int                                slice,
+         int                                least,
+         const PixelGrid &                  grid,
+         const std::vector<std::set<int>> & closed)
+{
+  Pieces pieces;
   pieces.label.assign(static_cast<std::size_t>(grid.nx) * grid.ny, 0);
+  if (slice < 0 || slice >= static_cast<int>(closed.size()))
+  {
+    return pieces;
+  }
+  const auto       contours = PlaneContoursOf(stack, stack.GetSlices()[slice]);
   std::vector<int> pieceOf(contours.size(), 0), outermost(contours.size(), 0);
   for (std::size_t c = 0; c < contours.size(); ++c)
   {
@@ -50,27 +99,19 @@ PiecesOf(const ContourStack & stack, std::size_t slice, int least, const PixelGr
     const int            around = contour.parent < 0 ? 0 : pieceOf[contour.parent];
     const bool           begins = contour.parent < 0 || contours[contour.parent].region == Region::Outside;
     outermost[c] = begins ? contour.id : outermost[contour.parent];
-    if (contour.region < least)
-    {
-      std::vector<int> hole(pieces.label.size(), 0);
-      FillPolygon(grid, contour.polygon, 1, hole);
-      bool closed = around == 0;
-      for (std::size_t i = 0; i < hole.size() && !closed; ++i)
-      {
-        closed = hole[i] != 0 && filled[i] != 0;
-      }
-      pieceOf[c] = closed ? around : 0;
-      pieces.euler -= closed ? 0 : 1;
-    }
-    else if (around > 0)
+    if (around > 0 && (contour.region >= least || closed[slice].count(contour.id) > 0))
     {
       pieceOf[c] = around;
     }
-    else
+    else if (contour.region >= least)
     {
       pieces.periosteal.push_back(outermost[c]);
       pieceOf[c] = static_cast<int>(pieces.periosteal.size());
       ++pieces.euler;
+    }
+    else if (around > 0)
+    {
+      --pieces.euler;
     }
     FillPolygon(grid, contour.polygon, pieceOf[c], pieces.label);
   }
@@ -254,29 +295,29 @@ FindSlabsOfOtherTopology(const MeshArrays &            mesh,
                          int                           least,
                          double                        pixel)
 {
-  const PixelGrid          grid = PixelGridOf(stack, pixel);
-  int                      outside = 0;
-  const auto               filled = PixelsInside(stack, least, pixel, outside);
-  const std::ptrdiff_t     area = static_cast<std::ptrdiff_t>(grid.nx) * grid.ny;
+  const auto               closed = ClosedHoles(stack, least, pixel);
   const auto               cells = CellsOfSlabs(mesh, stack, least);
   const auto               slices = static_cast<int>(stack.GetSlices().size());
-  Pieces                   below;
   std::vector<std::string> differing;
-  below.label.assign(area, 0);
   for (int k = 0; k <= slices; ++k)
   {
-    Pieces above;
-    above.label.assign(area, 0);
-    if (k < slices)
+    if (cells[k].empty() && ((k == 0 && stack.GetOpenStart()) || (k == slices && stack.GetOpenEnd())))
     {
-      above = PiecesOf(stack, k, least, grid, filled->GetBufferPointer() + (k + 1) * area);
+      continue; // the bone is cut here
     }
-    const auto   given = correspondence.slabs.find(k - 1);
-    const auto   groups = given == correspondence.slabs.end() ? decltype(given->second){} : given->second;
-    const Counts found = CountsOf(mesh, cells[k]);
-    const auto   allowed = AllowedCounts(below, above, groups, grid.nx);
-    const bool   cut = cells[k].empty() && ((k == 0 && stack.GetOpenStart()) || (k == slices && stack.GetOpenEnd()));
-    if (!cut && std::find(allowed.begin(), allowed.end(), found) == allowed.end())
+    const auto          given = correspondence.slabs.find(k - 1);
+    const auto          groups = given == correspondence.slabs.end() ? decltype(given->second){} : given->second;
+    const Counts        found = CountsOf(mesh, cells[k]);
+    std::vector<Counts> allowed;
+    bool                same = false;
+    for (int finer = 1; finer <= MostFiner && !same; finer *= 2)
+    {
+      const PixelGrid grid = PixelGridOf(stack, pixel / finer);
+      allowed = AllowedCounts(
+        PiecesOf(stack, k - 1, least, grid, closed), PiecesOf(stack, k, least, grid, closed), groups, grid.nx);
+      same = std::find(allowed.begin(), allowed.end(), found) != allowed.end();
+    }
+    if (!same)
     {
       std::ostringstream line;
       line << "region " << least << ", slices " << k - 1 << " to " << k << ": components " << found.components
@@ -287,7 +328,6 @@ FindSlabsOfOtherTopology(const MeshArrays &            mesh,
       }
       differing.push_back(line.str());
     }
-    below = std::move(above);
   }
   return differing;
 }

@@ -19,8 +19,8 @@ namespace bone
  * correspond. Slices overlap where a thin wall leans in several places, specks among them: each place may join, or
  * all of a pair's once. A piece that overlaps none may end flat on its slice. Pieces of an inner layer that do not
  * overlap, in pieces of bone that correspond, may be joined or not. So a slab's number of parts and Euler
- * characteristic can have few values; a line for every slab whose mesh has others. Overlaps are found on pixels (mm).
- */
+ * characteristic can have few values; a line for every slab whose mesh has others. Overlaps are found on pixels (mm),
+ * up to eight times finer ones where those give other counts. */
 std::vector<std::string>
 FindSlabsOfOtherTopology(const MeshArrays &            mesh,
                          const ContourStack &          stack,
