@@ -18,6 +18,8 @@ namespace bone
 namespace
 {
 constexpr int MostFiner = 8; ///< pixels, where the first give other counts
+/** mm^2, a tenth of a millimetre across: how far a filled slab's slices may be moved where its cells were too flat. */
+constexpr double SliverArea = 0.01;
 
 struct Counts
 {
@@ -122,12 +124,14 @@ PiecesOf(const ContourStack &               stack,
 struct Overlap
 {
   int  parts{ 0 };
+  int  slivers{ 0 }; ///< parts of less than SliverArea
   long euler{ 0 };
 };
 
 std::map<std::array<int, 2>, Overlap>
-FindOverlaps(const Pieces & below, const Pieces & above, std::ptrdiff_t nx)
+FindOverlaps(const Pieces & below, const Pieces & above, const PixelGrid & grid)
 {
+  const std::ptrdiff_t                  nx = grid.nx;
   std::map<std::array<int, 2>, Overlap> overlaps;
   std::vector<char>                     seen(below.label.size(), 0);
   std::vector<std::ptrdiff_t>           front;
@@ -143,12 +147,14 @@ FindOverlaps(const Pieces & below, const Pieces & above, std::ptrdiff_t nx)
     }
     Overlap & overlap = overlaps[pair];
     ++overlap.parts;
+    std::size_t pixels = 0;
     front.assign(1, static_cast<std::ptrdiff_t>(seed));
     seen[seed] = 1;
     while (!front.empty())
     {
       const std::ptrdiff_t i = front.back();
       front.pop_back();
+      ++pixels;
       const bool x = inside(i + 1), y = inside(i + nx), xy = x && y && inside(i + nx + 1);
       overlap.euler += 1 - x - y + xy;
       for (const std::ptrdiff_t next : { i - 1, i + 1, i - nx, i + nx })
@@ -160,6 +166,7 @@ FindOverlaps(const Pieces & below, const Pieces & above, std::ptrdiff_t nx)
         }
       }
     }
+    overlap.slivers += static_cast<double>(pixels) * grid.pixel * grid.pixel < SliverArea;
   }
   return overlaps;
 }
@@ -202,7 +209,7 @@ std::vector<Counts>
 AllowedCounts(const Pieces &                                    below,
               const Pieces &                                    above,
               const std::vector<ContourCorrespondence::Group> & groups,
-              std::ptrdiff_t                                    nx)
+              const PixelGrid &                                 grid)
 {
   const std::vector<int>           group = GroupsOf(groups, below, above);
   const auto                       lower = static_cast<int>(below.periosteal.size());
@@ -212,13 +219,15 @@ AllowedCounts(const Pieces &                                    below,
     joined.push_back({ static_cast<IdType>(i) });
   }
   long byParts = below.euler + above.euler, byPairs = byParts;
-  for (const auto & [pair, overlap] : FindOverlaps(below, above, nx))
+  int  slivers = 0;
+  for (const auto & [pair, overlap] : FindOverlaps(below, above, grid))
   {
     const int i = pair[0] - 1, j = lower + pair[1] - 1;
     if (group[i] == group[j])
     {
       joined.push_back({ i, j });
       byParts -= overlap.euler;
+      slivers += overlap.parts > 1 ? overlap.slivers : 0;
       byPairs -= 1 - (overlap.parts - overlap.euler);
     }
   }
@@ -235,9 +244,14 @@ AllowedCounts(const Pieces &                                    below,
       }
     }
   }
-  const int           fewer = CountJoined(joined, group.size());
+  const int         fewer = CountJoined(joined, group.size());
+  std::vector<long> eulers{ byPairs };
+  for (int left = 0; left <= slivers; ++left)
+  {
+    eulers.push_back(byParts + left);
+  }
   std::vector<Counts> allowed;
-  for (const long euler : { byParts, byPairs })
+  for (const long euler : eulers)
   {
     for (int joins = 0; joins <= components - fewer; ++joins)
     {
@@ -314,7 +328,7 @@ FindSlabsOfOtherTopology(const MeshArrays &            mesh,
     {
       const PixelGrid grid = PixelGridOf(stack, pixel / finer);
       allowed = AllowedCounts(
-        PiecesOf(stack, k - 1, least, grid, closed), PiecesOf(stack, k, least, grid, closed), groups, grid.nx);
+        PiecesOf(stack, k - 1, least, grid, closed), PiecesOf(stack, k, least, grid, closed), groups, grid);
       same = std::find(allowed.begin(), allowed.end(), found) != allowed.end();
     }
     if (!same)
