@@ -21,9 +21,9 @@ struct Resolution
 double
 EstimateSurface(const ContourStack & stack);
 
-/** First guess for a number of tetrahedra: with slices `s` and samples at most `h` apart, N = 17 A / (s h) for a surface
- * of area A (measured; curved and thin places have more samples), and s = 0.4 h spends them best. A step below the
- * slices' own spacing becomes that spacing, the samples then being further apart. */
+/** First guess for a number of tetrahedra: with slices `s` and samples at most `h` apart, N = 17 A / (s h) for a
+ * surface of area A (measured; curved and thin places have more samples), and s = 0.4 h spends them best. A step below
+ * the slices' own spacing becomes that spacing, the samples then being further apart. */
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra);
 
@@ -51,6 +51,16 @@ AdjustResolution(BuildPipeline &                                         pipelin
                  const Resolution &                                      start,
                  const ResolutionSearch &                                search,
                  const std::function<void(const Resolution &, IdType)> & tried);
+
+/** Resamples contours, whose own estimate is good to a quarter, so that their tiling (metric `span`) has a number of
+ * tetrahedra within 5 %, in at most five tilings. `axes` takes the contours from `resample` and is left up to date with
+ * the best. `tried` is told of each tiling. Returns the best number; throws itk::ExceptionObject where no contours can
+ * be made or tiled. */
+IdType
+AdjustSamples(ContourResampleFilter<> &           resample,
+              MedialAxisFilter<> &                axes,
+              IdType                              tetrahedra,
+              const std::function<void(IdType)> & tried);
 } // namespace bone
 
 #endif

@@ -9,6 +9,7 @@
 #include "boneContourResampleFilter.h"
 #include "boneContourSliceFilter.h"
 #include "boneMedialAxisFilter.h"
+#include "boneResolution.h"
 #include "boneSnakeContourFilter.h"
 
 #include <algorithm>
@@ -62,6 +63,22 @@ LayerDistance(const Options & options, const CTImage * ct)
   return options.layerDistance > 0.0 ? options.layerDistance : std::max(0.8, pixel);
 }
 
+/** Sets the spacings for a number of tetrahedra. */
+void
+FindSamples(double tetrahedra, ContourResampleFilter<> & resample, MedialAxisFilter<> & axes, Session & session)
+{
+  constexpr double off = 0.1;
+  const auto       asked = static_cast<IdType>(std::llround(tetrahedra));
+  const IdType     count = AdjustSamples(resample, axes, asked, [&session](IdType tried) {
+    session.Print("tiled with " + std::to_string(tried) + " tetrahedra\n");
+  });
+  if (std::abs(static_cast<double>(count) / tetrahedra - 1.0) > off)
+  {
+    session.Warn("the nearest to " + std::to_string(asked) + " tetrahedra that was found is " + std::to_string(count) +
+                 "; more or fewer slices (--adaptive-slices, --slice-step) would help");
+  }
+}
+
 void
 Run(const Options & options, Session & session)
 {
@@ -103,13 +120,16 @@ Run(const Options & options, Session & session)
   resample->SetMinimumLayerDistance(distance);
   resample->SetThinLayerRatio(options.layerRatio);
   resample->SetTargetNumberOfSamples(static_cast<std::size_t>(std::llround(options.samples)));
-  resample->SetTargetNumberOfTetrahedra(static_cast<std::size_t>(std::llround(options.tetrahedra)));
   auto axes = MedialAxisFilter<ContourStack>::New();
   axes->SetInput(resample->GetOutput());
   session.Watch(snake, "contours");
   session.Watch(slices, "choosing slices");
   session.Watch(resample, "resampling");
   session.Watch(axes, "medial axes");
+  if (options.tetrahedra > 0.0)
+  {
+    FindSamples(options.tetrahedra, *resample, *axes, session);
+  }
   axes->Update();
   for (const auto & warnings : { snake->GetWarnings(), resample->GetWarnings() })
   {
@@ -160,7 +180,10 @@ AddContoursCommand(CLI::App & app, Action & action)
   auto * samples = command->add_option(
     "--samples", options->samples, "Points of all contours, about; the spacings are scaled alike to give them");
   samples->check(Between(100, 1e8));
-  command->add_option("--tetrahedra", options->tetrahedra, "The same for the tetrahedra that a tiling will have, about")
+  command
+    ->add_option("--tetrahedra",
+                 options->tetrahedra,
+                 "The same for the tetrahedra of their tiling, within 5 % where that can be; tiles them to count")
     ->check(Between(500, 1e8))
     ->excludes(samples);
   command

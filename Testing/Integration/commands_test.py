@@ -128,6 +128,12 @@ class Commands(TestCase):
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
         self.succeed("validate", "m.vtu")
+        out, _ = self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "--tetrahedra", 25000,
+                              "-o", "asked.vtp")
+        self.succeed("mesh", "asked.vtp", "--metric", "span", "-o", "asked.vtu")
+        count = int(re.search(r"tetrahedra\s+(\d+)", self.succeed("info", "asked.vtu")[0]).group(1))
+        self.assertLess(abs(count / 25000 - 1), 0.05)
+        self.assertIn(f"tiled with {count} tetrahedra", out)
 
     def test_initial_contours_alone(self):
         """A person draws one contour; the others follow from slice to slice."""
