@@ -33,6 +33,7 @@ struct Options
   double      tikhonov{ 1e-4 };
   double      overshoot{ 8.0 };
   double      surfaceMargin{ 0.0 };
+  double      interfaceMargin{ 0.0 };
   double      maximumError{ 0.0 };
   std::string quantity{ "hu" };
   std::string report;
@@ -101,6 +102,7 @@ DescribeFit(Fit & fit, const CTImage & ct)
   blind->SetTikhonov(fit.GetTikhonov());
   blind->SetOvershootLimit(fit.GetOvershootLimit());
   blind->SetSurfaceMargin(fit.GetSurfaceMargin());
+  blind->SetInterfaceMargin(fit.GetInterfaceMargin());
   blind->SetMaximumError(fit.GetMaximumError());
   blind->HoldOutOn();
   blind->Update();
@@ -128,6 +130,7 @@ Run(const Options & options, Session & session)
   fit->SetTikhonov(options.tikhonov);
   fit->SetOvershootLimit(options.overshoot);
   fit->SetSurfaceMargin(options.surfaceMargin);
+  fit->SetInterfaceMargin(options.interfaceMargin);
   fit->SetMaximumError(options.maximumError);
   fit->SetQuantity(ParseDensityQuantity(options.quantity));
   session.Watch(fit, "density fit");
@@ -183,6 +186,9 @@ AddFitCommand(CLI::App & app, Action & action)
     ->add_option("--surface-margin",
                  options->surfaceMargin,
                  "What lies nearer than this to the surface (mm) takes the value this deep; default 0")
+    ->check(NotNegative());
+  command
+    ->add_option("--interface-margin", options->interfaceMargin, "The same for the faces between regions; default 0")
     ->check(NotNegative());
   command
     ->add_option("--quantity", options->quantity, "What the CT's values are: hu (default), k2hpo4, ha, ash, apparent")

@@ -91,7 +91,8 @@ class Commands(TestCase):
         self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 3, "--interpolator", "bspline", "--voxel-weight", 4,
                      "--overshoot-limit", 2, "-o", "s.vtu", "--report", "spline.json")
         self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 4, "--max-error", 60, "-o", "a.vtu", "--report", "adaptive.json")
-        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--surface-margin", 1, "--weights", "l.nii.gz", "-o", "w.vtu")
+        self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--surface-margin", 1, "--interface-margin", 1, "--weights",
+                     "l.nii.gz", "-o", "w.vtu")
         linear, spline, adaptive = (read_json(name + ".json") for name in ("linear", "spline", "adaptive"))
         self.assertLess(spline["error"]["meanAbsolute"], linear["error"]["meanAbsolute"])
         self.assertLess(linear["error"]["meanAbsolute"], linear["heldOutError"]["meanAbsolute"])

@@ -61,6 +61,8 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  *   Default 8.
  * - SurfaceMargin (mm): what lies nearer to the mesh's surface counts as what lies this deep straight inward of it, so
  *   that voxels partly outside the bone leave no dark rim. Default 0: the image as it is.
+ * - InterfaceMargin (mm): the same for the faces between regions, from either side, so that a scanner's blur does not
+ *   mix the layers' densities. Default 0.
  * - MaximumError (density units): above 0, each tetrahedron takes the lowest degree, up to Degree, whose root mean
  * square error over its samples and voxels is no more than this. Not with Continuous. Default 0: all have Degree.
  * - HoldOut: the voxels of IsHeldOut(), one in five, play no part in the fit, so that the error at them tells what the
@@ -128,6 +130,8 @@ public:
   itkGetConstMacro(OvershootLimit, double);
   itkSetMacro(SurfaceMargin, double);
   itkGetConstMacro(SurfaceMargin, double);
+  itkSetMacro(InterfaceMargin, double);
+  itkGetConstMacro(InterfaceMargin, double);
   itkSetMacro(MaximumError, double);
   itkGetConstMacro(MaximumError, double);
   itkSetMacro(HoldOut, bool);
@@ -196,6 +200,7 @@ private:
   double              m_VoxelWeight{ 4.0 };
   double              m_OvershootLimit{ 8.0 };
   double              m_SurfaceMargin{ 0.0 };
+  double              m_InterfaceMargin{ 0.0 };
   double              m_MaximumError{ 0.0 };
   bool                m_HoldOut{ false };
   DensityQuantity     m_Quantity{ DensityQuantity::HounsfieldUnit };

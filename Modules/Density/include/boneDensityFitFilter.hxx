@@ -90,6 +90,7 @@ DensityFitFilter<TImage, TMesh>::VerifyPreconditions() ITKv5_CONST
   }
   const std::pair<const char *, double> notNegative[] = { { "VoxelWeight", m_VoxelWeight },
                                                           { "SurfaceMargin", m_SurfaceMargin },
+                                                          { "InterfaceMargin", m_InterfaceMargin },
                                                           { "MaximumError", m_MaximumError } };
   for (const auto & [name, value] : notNegative)
   {
@@ -256,6 +257,7 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays)
   settings.voxelWeight = m_VoxelWeight;
   settings.overshootLimit = m_OvershootLimit;
   settings.surfaceMargin = m_SurfaceMargin;
+  settings.interfaceMargin = m_InterfaceMargin;
   settings.maximumError = m_MaximumError;
   settings.holdOut = m_HoldOut;
 
@@ -323,6 +325,7 @@ DensityFitFilter<TImage, TMesh>::PrintSelf(std::ostream & os, itk::Indent indent
   os << indent << "VoxelWeight: " << m_VoxelWeight << '\n';
   os << indent << "OvershootLimit: " << m_OvershootLimit << '\n';
   os << indent << "SurfaceMargin: " << m_SurfaceMargin << '\n';
+  os << indent << "InterfaceMargin: " << m_InterfaceMargin << '\n';
   os << indent << "MaximumError: " << m_MaximumError << '\n';
   os << indent << "HoldOut: " << (m_HoldOut ? "On" : "Off") << '\n';
   os << indent << "OutsideFraction: " << this->GetOutsideFraction() << '\n';

@@ -23,6 +23,7 @@ struct DensityFitSettings
   double voxelWeight{ 4.0 };
   double overshootLimit{ std::numeric_limits<double>::infinity() };
   double surfaceMargin{ 0.0 };
+  double interfaceMargin{ 0.0 };
   double maximumError{ 0.0 };
   bool   holdOut{ false };
 };

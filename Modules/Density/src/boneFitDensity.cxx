@@ -78,7 +78,7 @@ struct CellData
   std::vector<double>         values;
   std::vector<double>         weights; // of its voxels; empty: all 1
   double                      low, high;
-  bool                        nearSurface{ false }; // nearer than the margin, in part
+  bool                        nearSurface{ false }; // nearer to one than its margin, in part
   Finding                     found;
 };
 
@@ -103,6 +103,33 @@ struct Batch
   DensityFitReport            report;
 };
 
+/** A surface, and how deep a place must lie for its own value to count, mm. */
+struct Rim
+{
+  TriangleTree tree;
+  double       margin;
+};
+
+/** Faces between regions. */
+std::vector<std::array<IdType, 3>>
+InterfaceFaces(const MeshArrays & mesh)
+{
+  std::vector<std::array<IdType, 3>> faces;
+  for (std::size_t t = 0; t < mesh.region.size(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const IdType other = mesh.neighbors[t][i];
+      if (other >= 0 && mesh.region[t] < mesh.region[other])
+      {
+        const Id4 & v = mesh.tetrahedra[t];
+        faces.push_back({ v[TetraFaces[i][0]], v[TetraFaces[i][1]], v[TetraFaces[i][2]] });
+      }
+    }
+  }
+  return faces;
+}
+
 class Fitter
 {
 public:
@@ -126,6 +153,8 @@ private:
   SquaredError(const Pass & pass, const Batch & batch, std::size_t c) const;
   void
   Finish(const Pass & pass, Batch & batch);
+  void
+  AddRim(const std::vector<std::array<IdType, 3>> & faces, double margin);
   bool
   MoveInward(Vector3 & index) const;
   void
@@ -135,7 +164,7 @@ private:
   const DensityFitImage &    m_Image;
   const DensityFitSettings & m_Settings;
   Eigen::Matrix3d            m_ToIndex;
-  TriangleTree               m_Boundary; // empty without a margin
+  std::vector<Rim>           m_Rims;     // those with a margin; the mesh's surface last
   std::vector<Finding>       m_Findings; // of each tetrahedron
   std::vector<char>          m_Open;     // of each tetrahedron: its error is above the bound
 };
@@ -148,46 +177,71 @@ Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFi
   , m_Findings(mesh.tetrahedra.size())
   , m_Open(mesh.tetrahedra.size(), 1)
 {
+  if ((settings.surfaceMargin > 0 || settings.interfaceMargin > 0) && mesh.neighbors.empty())
+  {
+    mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  }
+  if (settings.interfaceMargin > 0)
+  {
+    this->AddRim(InterfaceFaces(mesh), settings.interfaceMargin);
+  }
   if (settings.surfaceMargin > 0)
   {
-    if (mesh.neighbors.empty())
-    {
-      mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
-    }
-    std::vector<TriangleTree::Triangle> faces;
-    for (const auto & face : BoundaryFaces(mesh))
-    {
-      faces.push_back({ { mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] } });
-    }
-    m_Boundary = TriangleTree(std::move(faces));
+    this->AddRim(BoundaryFaces(mesh), settings.surfaceMargin);
   }
 }
 
-/** Moves a place nearer than the margin to the surface inward to that depth, away from one face after another at edges
- * and corners, but not where that brings it nearer to another part of the surface. Returns whether it was nearer. */
-bool
-Fitter::MoveInward(Vector3 & index) const
+void
+Fitter::AddRim(const std::vector<std::array<IdType, 3>> & faces, double margin)
 {
-  Vector3 x = m_Image.grid.origin + m_Image.grid.axes * index;
-  auto    nearest = m_Boundary.FindNearest(x);
-  bool    near = false;
+  if (!faces.empty())
+  {
+    std::vector<TriangleTree::Triangle> triangles;
+    for (const auto & face : faces)
+    {
+      triangles.push_back({ { m_Mesh.points[face[0]], m_Mesh.points[face[1]], m_Mesh.points[face[2]] } });
+    }
+    m_Rims.push_back({ TriangleTree(std::move(triangles)), margin });
+  }
+}
+
+/** Moves x away from a surface that it is nearer to than the margin, as MoveInward says. */
+bool
+MoveFrom(const Rim & rim, Vector3 & x)
+{
+  auto nearest = rim.tree.FindNearest(x);
+  bool near = false;
   for (int step = 0; step < 4; ++step)
   {
     const double depth = std::sqrt(nearest.squaredDistance);
-    const bool   tooNear = depth < (1 - 1e-9) * m_Settings.surfaceMargin;
+    const bool   tooNear = depth < (1 - 1e-9) * rim.margin;
     near = near || tooNear;
     if (!tooNear || depth == 0)
     {
       break;
     }
-    const Vector3 moved = nearest.point + (x - nearest.point) * (m_Settings.surfaceMargin / depth);
-    const auto    next = m_Boundary.FindNearest(moved);
+    const Vector3 moved = nearest.point + (x - nearest.point) * (rim.margin / depth);
+    const auto    next = rim.tree.FindNearest(moved);
     if (next.squaredDistance <= nearest.squaredDistance)
     {
       break;
     }
     x = moved;
     nearest = next;
+  }
+  return near;
+}
+
+/** Moves a place nearer to a surface than its margin inward to that depth, away from one face after another at edges
+ * and corners, but not where that brings it nearer to another part of the surface. Returns whether it was nearer. */
+bool
+Fitter::MoveInward(Vector3 & index) const
+{
+  Vector3 x = m_Image.grid.origin + m_Image.grid.axes * index;
+  bool    near = false;
+  for (const Rim & rim : m_Rims)
+  {
+    near = MoveFrom(rim, x) || near;
   }
   index = m_ToIndex * (x - m_Image.grid.origin);
   return near;
@@ -203,7 +257,7 @@ Fitter::Sample(Batch & batch, std::size_t c) const
     cell.vertices.col(i) = m_ToIndex * (m_Mesh.points[v[i]] - m_Image.grid.origin);
   }
   cell.volume = std::abs((cell.vertices.rightCols<3>().colwise() - cell.vertices.col(0)).determinant()) / 6;
-  if (!m_Boundary.IsEmpty())
+  if (!m_Rims.empty())
   {
     Vector3 middle = Vector3::Zero();
     for (const IdType p : v)
@@ -215,7 +269,11 @@ Fitter::Sample(Batch & batch, std::size_t c) const
     {
       radius = std::max(radius, (m_Mesh.points[p] - middle).norm());
     }
-    cell.nearSurface = std::sqrt(m_Boundary.FindNearest(middle).squaredDistance) < radius + m_Settings.surfaceMargin;
+    for (const Rim & rim : m_Rims)
+    {
+      cell.nearSurface =
+        cell.nearSurface || std::sqrt(rim.tree.FindNearest(middle).squaredDistance) < radius + rim.margin;
+    }
   }
   const auto &         pattern = batch.kernel.SamplePoints();
   std::vector<Vector3> places(pattern.size());

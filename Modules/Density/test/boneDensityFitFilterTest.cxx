@@ -440,6 +440,36 @@ TEST(DensityFitFilter, AMarginKeepsTheDarkRimOut)
   EXPECT_NEAR(kept, 800, 1);
 }
 
+TEST(DensityFitFilter, AMarginAtInterfacesPartsTheRegions)
+{
+  // Two regions, and an image whose step between them is blurred and lies 0.8 mm off.
+  MeshArrays   mesh = Block();
+  const double step = Lower[0] + 10.0;
+  mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    double x = 0;
+    for (const IdType p : mesh.tetrahedra[t])
+    {
+      x += 0.25 * mesh.points[p][0];
+    }
+    mesh.region[t] = x < step ? 1 : 2;
+  }
+  const auto image = test::ObliqueImage<test::DoubleImage>(
+    [&](const Vector3 & x) { return 500.0 + 400.0 * std::tanh((x[0] - step - 0.8) / 0.5); });
+  auto filter = MakeFit(mesh, image.GetPointer(), 2);
+  filter->Update();
+  const auto mixed = MeasureRegions(filter->GetOutput()->GetArrays());
+  filter->SetInterfaceMargin(3.5);
+  filter->Update();
+  const auto parted = MeasureRegions(filter->GetOutput()->GetArrays());
+  EXPECT_LT(mixed[1].mean, 860);
+  EXPECT_NEAR(parted[0].mean, 100, 5);
+  EXPECT_NEAR(parted[1].mean, 900, 5);
+  filter->SetInterfaceMargin(-1);
+  ExpectRefusal(*filter, "InterfaceMargin is -1");
+}
+
 TEST(DensityFitFilter, RefusesWhatItCannotFit)
 {
   const auto image = test::ObliqueImage<test::DoubleImage>(test::Linear);
