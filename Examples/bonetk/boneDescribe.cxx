@@ -234,9 +234,13 @@ DescribeModel(const StatisticalModel & model)
   modes("shape", content.shape, static_cast<double>(content.mean.points.size()), "mm (root mean square of points)");
   if (model.HasDensity())
   {
-    const double per = content.density.weights.size() > 0 ? content.density.weights.sum()
-                                                          : static_cast<double>(content.density.GetDimension());
-    modes("density", content.density, per, "(root mean square of coefficients)");
+    const bool   byVolume = content.density.weights.size() > 0;
+    const auto   cells = static_cast<double>(content.mean.tetrahedra.size());
+    const double per = byVolume ? cells : static_cast<double>(content.density.GetDimension());
+    modes("density",
+          content.density,
+          per,
+          byVolume ? "(root mean square over the bone)" : "(root mean square of coefficients)");
   }
   if (model.IsCombined())
   {

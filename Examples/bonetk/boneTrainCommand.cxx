@@ -161,7 +161,7 @@ AddTrainCommand(CLI::App & app, Action & action)
     ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
   command->add_flag("--similarity", options->similarity, "Take size out of the shapes");
   command->add_flag("--combined", options->combined, "Combined modes of shape and density too");
-  command->add_flag("--volume-weighted", options->volumeWeighted, "Weigh densities by the volume of tetrahedra");
+  command->add_flag("--volume-weighted", options->volumeWeighted, "Modes of density by integrals over the volume in place of coefficients");
   command->add_option("--variance", options->variance, "Share of the variance that the modes explain; default 0.98")
     ->check(Between(0.01, 1));
   command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")

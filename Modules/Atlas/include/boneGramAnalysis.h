@@ -35,11 +35,12 @@ struct GramParameters
  * largest are rounding and left out. A mode's largest entry is positive. The modes are made orthonormal to rounding by
  * one Cholesky-QR step. The result is the same for any number of threads.
  *
- * `weights`: of the inner product, empty for the plain one. `scores`: #count by #k coefficients in standard deviations.
- * Throws std::invalid_argument for fewer than two vectors. */
+ * `weights`, `block`: of the inner product (\ref PrincipalModes), empty for the plain one. `scores`: #count by #k
+ * coefficients in standard deviations. Throws std::invalid_argument for fewer than two vectors. */
 PrincipalModes
 AnalyzeVectors(const VectorSource &    source,
                const Eigen::VectorXd & weights,
+               const Eigen::MatrixXd & block,
                const GramParameters &  parameters,
                Eigen::MatrixXd *       scores = nullptr);
 } // namespace bone

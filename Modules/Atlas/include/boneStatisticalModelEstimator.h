@@ -27,8 +27,9 @@ namespace bone
  *   default 0.98; 1 keeps full rank.
  * - MaximumModes: of each; default 0, no limit.
  * - Combined: also Cootes' combined model of both; default off, as in the paper.
- * - VolumeWeighted: inner product of densities weighted by the mean's cell volumes, so that small cells count less;
- *   default off: each coefficient counts alike, as in the paper.
+ * - VolumeWeighted: inner product of densities by their integral over the mean mesh, so that cells count by their
+ * volume and modes are those of the density as a function, whatever its degree; default off: each coefficient counts
+ * alike, as in the paper.
  * - OutlierThreshold: modified z-score of a subject's distance to the mean, in shape or density, above which it is
  * called an outlier; default 3.5, 0: none are. RejectOutliers: train again without them; default off.
  * - BlockBytes: memory for densities held at once; default 1 GiB. Does not change results beyond rounding.

@@ -36,13 +36,69 @@ OverRows(Eigen::Index rows, const std::function<void(Eigen::Index, Eigen::Index)
   });
 }
 
-/** Reads vectors, centred and scaled to the plain inner product. */
+/** Turns vectors to ones whose plain inner product is that of weights and a block, and back. */
+class PlainProduct
+{
+public:
+  PlainProduct(const Eigen::VectorXd & weights, const Eigen::MatrixXd & block)
+    : m_Scale(weights.cwiseSqrt())
+    , m_Factor(block.rows(), block.cols())
+  {
+    if (block.size() > 0)
+    {
+      const Eigen::LLT<Eigen::MatrixXd> factor(block);
+      if (factor.info() != Eigen::Success)
+      {
+        throw std::invalid_argument("The block of an inner product must be positive definite.");
+      }
+      m_Factor = factor.matrixU();
+    }
+  }
+  void
+  To(Eigen::MatrixXd & vectors) const
+  {
+    if (m_Factor.size() > 0)
+    {
+      auto runs = this->Runs(vectors);
+      runs = (m_Factor * runs).eval();
+    }
+    if (m_Scale.size() > 0)
+    {
+      vectors.array().colwise() *= m_Scale.array();
+    }
+  }
+  void
+  From(Eigen::MatrixXd & vectors) const
+  {
+    if (m_Scale.size() > 0)
+    {
+      vectors.array().colwise() /= m_Scale.array();
+    }
+    if (m_Factor.size() > 0)
+    {
+      auto runs = this->Runs(vectors);
+      m_Factor.triangularView<Eigen::Upper>().solveInPlace(runs);
+    }
+  }
+
+private:
+  Eigen::Map<Eigen::MatrixXd>
+  Runs(Eigen::MatrixXd & vectors) const
+  {
+    return { vectors.data(), m_Factor.rows(), vectors.size() / m_Factor.rows() };
+  }
+
+  Eigen::VectorXd m_Scale;
+  Eigen::MatrixXd m_Factor; ///< U of block = U^T U
+};
+
+/** Reads vectors, centred and turned to the plain inner product. */
 class CentredReader
 {
 public:
-  CentredReader(const VectorSource & source, const Eigen::VectorXd & weights)
+  CentredReader(const VectorSource & source, const PlainProduct & product)
     : m_Source(source)
-    , m_Scale(weights.cwiseSqrt())
+    , m_Product(product)
     , m_Mean(Eigen::VectorXd::Zero(source.dimension))
   {
     Eigen::VectorXd y(source.dimension);
@@ -65,17 +121,14 @@ public:
     {
       m_Source.load(first + i, block.col(i).data());
       block.col(i) -= m_Mean;
-      if (m_Scale.size() > 0)
-      {
-        block.col(i).array() *= m_Scale.array();
-      }
     }
+    m_Product.To(block);
     return block;
   }
 
 private:
   const VectorSource & m_Source;
-  Eigen::VectorXd      m_Scale;
+  const PlainProduct & m_Product;
   Eigen::VectorXd      m_Mean;
 };
 
@@ -176,6 +229,7 @@ FixSigns(Eigen::MatrixXd & modes, Eigen::MatrixXd & vectors)
 PrincipalModes
 AnalyzeVectors(const VectorSource &    source,
                const Eigen::VectorXd & weights,
+               const Eigen::MatrixXd & block,
                const GramParameters &  parameters,
                Eigen::MatrixXd *       scores)
 {
@@ -184,7 +238,8 @@ AnalyzeVectors(const VectorSource &    source,
   {
     throw std::invalid_argument("Modes of variation need two subjects or more.");
   }
-  const CentredReader   reader(source, weights);
+  const PlainProduct    product(weights, block);
+  const CentredReader   reader(source, product);
   const Eigen::MatrixXd gram = GramMatrix(reader, source, parameters.blockBytes) / static_cast<double>(n - 1);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
   const Eigen::VectorXd                                variances = eigen.eigenvalues().reverse();
@@ -192,6 +247,7 @@ AnalyzeVectors(const VectorSource &    source,
   PrincipalModes result;
   result.mean = reader.Mean();
   result.weights = weights;
+  result.block = block;
   result.totalVariance = gram.trace();
   const Eigen::Index k = CountModes(variances, result.totalVariance, parameters);
   result.variances = variances.head(k);
@@ -211,10 +267,7 @@ AnalyzeVectors(const VectorSource &    source,
   {
     Orthonormalize(result.modes);
   }
-  if (weights.size() > 0)
-  {
-    result.modes.array().colwise() /= weights.cwiseSqrt().array();
-  }
+  product.From(result.modes);
   FixSigns(result.modes, vectors);
   if (scores != nullptr)
   {

@@ -25,7 +25,7 @@ ModesWithout(const Eigen::MatrixXd & columns, Eigen::Index left)
   source.load = [&columns, left](Eigen::Index i, double * y) {
     Eigen::Map<Eigen::VectorXd>(y, columns.rows()) = columns.col(left >= 0 && i >= left ? i + 1 : i);
   };
-  return AnalyzeVectors(source, Eigen::VectorXd(), GramParameters());
+  return AnalyzeVectors(source, {}, {}, GramParameters());
 }
 
 /** The nearest vector to y of the model with k modes. */

@@ -56,7 +56,24 @@ VerifySubject(const TrainingSet & set, std::size_t i, const MeshArrays & mesh, c
   }
 }
 
-/** Cell volume over coefficients of a cell for every coefficient, of mean 1. */
+/** Inner products of the Bernstein polynomials of a degree in a cell of volume 1. */
+Eigen::MatrixXd
+BernsteinGram(int degree)
+{
+  const int       count = BernsteinCount(degree);
+  Eigen::MatrixXd gram(count, count);
+  for (int i = 0; i < count; ++i)
+  {
+    for (int j = 0; j < count; ++j)
+    {
+      const Eigen::VectorXd a = Eigen::VectorXd::Unit(count, i), b = Eigen::VectorXd::Unit(count, j);
+      gram(i, j) = BernsteinInnerProduct(degree, a.data(), degree, b.data(), 1.0);
+    }
+  }
+  return gram;
+}
+
+/** Volume of the cell of every coefficient, of mean 1 over the cells. */
 Eigen::VectorXd
 VolumeWeights(const MeshArrays & mesh)
 {
@@ -203,12 +220,15 @@ AnalyzeSubjects(const TrainingSet &              set,
   content.similarity = parameters.alignment == AlignmentKind::Similarity;
   content.mean.points = AlignShapes(shapes, parameters.alignment).mean;
   GramParameters gram{ parameters.proportion, parameters.maximumModes, parameters.blockBytes };
-  content.shape = AnalyzeVectors(ShapeSource(shapes), Eigen::VectorXd(), gram, &content.shapeScores);
+  content.shape = AnalyzeVectors(ShapeSource(shapes), {}, {}, gram, &content.shapeScores);
   if (topology.HasDensity())
   {
     const Eigen::VectorXd weights = parameters.volumeWeighted ? VolumeWeights(content.mean) : Eigen::VectorXd();
-    const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
-    content.density = AnalyzeVectors(DensitySource(set, chosen, dimension), weights, gram, &content.densityScores);
+    const Eigen::MatrixXd block =
+      parameters.volumeWeighted ? BernsteinGram(content.mean.maximumDegree) : Eigen::MatrixXd();
+    const auto dimension = static_cast<Eigen::Index>(topology.coefficients.size());
+    content.density =
+      AnalyzeVectors(DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores);
     content.mean.coefficients.assign(content.density.mean.data(), content.density.mean.data() + dimension);
     if (parameters.combined && content.density.GetNumberOfModes() > 0 && content.shape.GetNumberOfModes() > 0)
     {

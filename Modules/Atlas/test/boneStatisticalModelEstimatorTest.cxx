@@ -44,9 +44,9 @@ OrthonormalityError(const PrincipalModes & model)
 {
   const Eigen::Index k = model.GetNumberOfModes();
   Eigen::MatrixXd    weighted = model.modes;
-  if (model.weights.size() > 0)
+  for (Eigen::Index i = 0; i < k; ++i)
   {
-    weighted.array().colwise() *= model.weights.array();
+    weighted.col(i) = model.Dual(model.modes.col(i));
   }
   return (model.modes.transpose() * weighted - Eigen::MatrixXd::Identity(k, k)).cwiseAbs().maxCoeff();
 }
@@ -99,6 +99,30 @@ TEST(StatisticalModelEstimator, ModesAreOrthonormalAndScoresAreThoseOfTheSubject
     EXPECT_LT((covariance - Eigen::MatrixXd::Identity(b.cols(), b.cols())).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_NEAR(content.shape.variances.sum(), content.shape.totalVariance, 1e-9 * content.shape.totalVariance);
   }
+}
+
+TEST(StatisticalModelEstimator, VolumeWeightedModesAreThoseOfTheDensityWhateverItsDegree)
+{
+  auto       subjects = MakePopulation(8);
+  const auto low = Estimate(subjects, [](Estimator * e) { e->VolumeWeightedOn(); });
+  const int  degree = subjects.front().maximumDegree;
+  const auto from = static_cast<std::size_t>(BernsteinCount(degree)),
+             to = static_cast<std::size_t>(BernsteinCount(degree + 2));
+  for (MeshArrays & subject : subjects)
+  {
+    const auto before = subject.coefficients;
+    subject.maximumDegree = degree + 2;
+    subject.degree.assign(subject.tetrahedra.size(), degree + 2);
+    subject.coefficients.resize(subject.tetrahedra.size() * to);
+    for (std::size_t t = 0; t < subject.tetrahedra.size(); ++t)
+    {
+      BernsteinElevate(degree, &before[t * from], degree + 2, &subject.coefficients[t * to]);
+    }
+  }
+  const auto  high = Estimate(subjects, [](Estimator * e) { e->VolumeWeightedOn(); });
+  const auto &a = low->GetOutput()->GetContent().density, &b = high->GetOutput()->GetContent().density;
+  ASSERT_EQ(a.GetNumberOfModes(), b.GetNumberOfModes());
+  EXPECT_LT((b.variances - a.variances).norm(), 1e-8 * b.variances.norm());
 }
 
 TEST(StatisticalModelEstimator, FindsAsManyDensityModesAsThereArePatterns)

@@ -15,7 +15,8 @@ namespace bone
  * \brief A linear Gaussian model of a vector: y = mean + sum over k of b_k sqrt(variance_k) mode_k, b ~ N(0, 1).
  *
  * #d entries, #k modes. Coefficients b are in standard deviations everywhere. The inner product of two vectors is the
- * sum of weight * x * y where weights are given, and the plain one elsewhere; modes are orthonormal in it.
+ * sum of weight * x * y where weights are given, and the plain one elsewhere; with a block, #b by #b, the sum over runs
+ * of #b entries, whose weights are alike, of weight * x^T block y. Modes are orthonormal in it.
  *
  * Functions throw std::invalid_argument where a length does not suit. */
 struct PrincipalModes
@@ -24,6 +25,7 @@ struct PrincipalModes
   Eigen::MatrixXd modes;                ///< #d by #k, orthonormal columns
   Eigen::VectorXd variances;            ///< #k, descending, positive
   Eigen::VectorXd weights;              ///< #d, positive; empty: all 1
+  Eigen::MatrixXd block;                ///< #b by #b, symmetric, positive definite; empty: identity. #b divides #d
   double          totalVariance{ 0.0 }; ///< of the training set, kept modes or not
 
   Eigen::Index
@@ -40,6 +42,10 @@ struct PrincipalModes
   /** The vector of the coefficients; fewer than #k: the rest are 0. */
   Eigen::VectorXd
   Synthesize(const Eigen::VectorXd & coefficients) const;
+
+  /** The vector whose plain inner product with another one is the model's own. */
+  Eigen::VectorXd
+  Dual(Eigen::VectorXd y) const;
 
   /** Coefficients of the nearest vector of the model. */
   Eigen::VectorXd

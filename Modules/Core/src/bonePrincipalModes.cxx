@@ -38,15 +38,26 @@ PrincipalModes::Synthesize(const Eigen::VectorXd & coefficients) const
 }
 
 Eigen::VectorXd
+PrincipalModes::Dual(Eigen::VectorXd y) const
+{
+  Require(y.size() == this->GetDimension(), "Vector of the wrong length", y.size(), this->GetDimension());
+  if (block.size() > 0)
+  {
+    Eigen::Map<Eigen::MatrixXd> runs(y.data(), block.rows(), y.size() / block.rows());
+    runs = (block * runs).eval();
+  }
+  if (weights.size() > 0)
+  {
+    y = y.cwiseProduct(weights);
+  }
+  return y;
+}
+
+Eigen::VectorXd
 PrincipalModes::Project(const Eigen::VectorXd & y) const
 {
   Require(y.size() == this->GetDimension(), "Vector of the wrong length", y.size(), this->GetDimension());
-  Eigen::VectorXd difference = y - mean;
-  if (weights.size() > 0)
-  {
-    difference = difference.cwiseProduct(weights);
-  }
-  return (modes.transpose() * difference).cwiseQuotient(variances.cwiseSqrt());
+  return (modes.transpose() * this->Dual(y - mean)).cwiseQuotient(variances.cwiseSqrt());
 }
 
 PrincipalModes
@@ -81,6 +92,7 @@ PrincipalModes::Posterior(const std::vector<Eigen::Index> & entries, const Eigen
   posterior.modes = modes * eigen.eigenvectors().rowwise().reverse();
   posterior.variances = eigen.eigenvalues().reverse().cwiseMax(0.0);
   posterior.weights = weights;
+  posterior.block = block;
   posterior.totalVariance = posterior.variances.sum();
   return posterior;
 }

@@ -11,7 +11,9 @@ bool
 Consistent(const PrincipalModes & modes)
 {
   return modes.modes.rows() == modes.mean.size() && modes.modes.cols() == modes.variances.size() &&
-         (modes.weights.size() == 0 || modes.weights.size() == modes.mean.size());
+         (modes.weights.size() == 0 || modes.weights.size() == modes.mean.size()) &&
+         (modes.block.size() == 0 ||
+          (modes.block.rows() == modes.block.cols() && modes.mean.size() % modes.block.rows() == 0));
 }
 } // namespace
 

@@ -226,6 +226,10 @@ PutModes(const H5::Group &       parent,
   {
     Put(group, "weights", modes.weights);
   }
+  if (modes.block.size() > 0)
+  {
+    PutColumns(group, "block", modes.block);
+  }
 }
 
 PrincipalModes
@@ -241,6 +245,10 @@ GetModes(const H5::Group & parent, const std::string & name, Eigen::MatrixXd & s
   if (group.nameExists("weights"))
   {
     modes.weights = GetVector(group, "weights");
+  }
+  if (group.nameExists("block"))
+  {
+    modes.block = GetColumns(group, "block");
   }
   if (modes.variances.size() > 0 && !(modes.variances.minCoeff() > 0))
   {

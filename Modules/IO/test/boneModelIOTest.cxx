@@ -43,6 +43,7 @@ Content()
   content.shape = Modes(15, 3, 7.0);
   content.density = Modes(8, 2, 900.0);
   content.density.weights = Eigen::VectorXd::Constant(8, 2.0);
+  content.density.block = Eigen::Matrix2d{ { 2.0, 1.0 }, { 1.0, 2.0 } };
   content.combined.vectors = Eigen::MatrixXd::Identity(5, 2);
   content.combined.variances = Eigen::Vector2d(3, 1);
   content.combined.shapeWeight = 12.0;
@@ -74,6 +75,7 @@ TEST_F(ModelIO, WhatWasWrittenIsRead)
   EXPECT_EQ(a.shape.variances, b.shape.variances);
   EXPECT_EQ(a.density.modes, b.density.modes);
   EXPECT_EQ(a.density.weights, b.density.weights);
+  EXPECT_EQ(a.density.block, b.density.block);
   EXPECT_EQ(a.combined.vectors, b.combined.vectors);
   EXPECT_EQ(a.combined.shapeWeight, b.combined.shapeWeight);
   EXPECT_EQ(a.shapeScores, b.shapeScores);
