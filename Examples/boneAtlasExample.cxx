@@ -29,10 +29,11 @@ using bone::CTImage;
 using bone::LabelImage;
 using MeshType = bone::DensityMesh<double>;
 
-/** One subject: its surface and its simulated CT. */
+/** One subject: its layered mesh or, where there is none, its surface; and its simulated CT. */
 struct Subject
 {
   std::string           name;
+  bone::MeshArrays      mesh;
   bone::TriangleSurface surface;
   CTImage::Pointer      ct;
 };
@@ -92,13 +93,15 @@ Train(bone::PopulationRegistration &                population,
   {
     const Subject subject = make();
     auto          mesh = MeshType::New();
-    mesh->SetArrays(population.Bring(subject.surface, subject.ct));
+    mesh->SetArrays(subject.mesh.tetrahedra.empty() ? population.Bring(subject.surface, subject.ct)
+                                                    : population.Bring(subject.mesh, subject.ct));
     set->AddSubject(subject.name, mesh);
     const auto & report = population.GetFilter()->GetReport();
     std::cout << subject.name << ": " << report.surfaceDistance << " mm from the subject" << std::endl;
   }
   auto estimator = bone::StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
+  estimator->VolumeWeightedOn(); // modes of the density as a function
   estimator->Update();
   const auto * model = estimator->GetOutput();
   bone::WriteStatisticalModel(model, folder + "/atlas.h5");
@@ -115,10 +118,8 @@ TrainHemipelves(const std::string & folder)
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
   {
     subjects.push_back([seed] {
-      const auto                source = Scan(bone::MakePhantom("hemipelvis", seed));
-      std::vector<bone::IdType> id;
-      const auto                surface = bone::ExteriorSurface(Model(source, 2)->GetArrays(), id);
-      return Subject{ "hemipelvis " + std::to_string(seed), surface, source->GetOutput() };
+      const auto source = Scan(bone::MakePhantom("hemipelvis", seed));
+      return Subject{ "hemipelvis " + std::to_string(seed), Model(source, 2)->GetArrays(), {}, source->GetOutput() };
     });
   }
   Train(population, subjects, folder, -bone::Vector3::UnitX(), bone::Vector3::UnitZ());
@@ -141,7 +142,7 @@ TrainSurfaces(const std::string & folder, const std::vector<std::string> & files
   {
     subjects.push_back([file] {
       const auto surface = bone::ReadTriangleSurface(file);
-      return Subject{ std::filesystem::path(file).stem().string(), surface, ScanSurface(surface)->GetOutput() };
+      return Subject{ std::filesystem::path(file).stem().string(), {}, surface, ScanSurface(surface)->GetOutput() };
     });
   }
   Train(population, subjects, folder, bone::Vector3::UnitY(), bone::Vector3::UnitX());

@@ -8,8 +8,11 @@
 #include "boneIOError.h"
 #include "boneTetraLocator.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace bone
 {
@@ -68,6 +71,65 @@ ReadSubjectList(const std::string & path)
   return subjects;
 }
 
+namespace
+{
+/** A model's density, looked up in the cells of one region, or in all. */
+class DensityLookup
+{
+public:
+  /** `region`: below 0, or of no cell: all regions. */
+  DensityLookup(const MeshArrays & model, int region)
+    : m_Model(model)
+    , m_Cells(CellsOf(model, region))
+    , m_Locator(Part(model, m_Cells))
+  {}
+
+  /** At x, or at the nearest place in the cells. `hint`: where the last one was found. */
+  double
+  Value(const Vector3 & x, IdType & hint) const
+  {
+    const CellLocation place = m_Locator.FindNearest(x, hint);
+    hint = place.cell;
+    const auto cell = static_cast<std::size_t>(m_Cells[static_cast<std::size_t>(place.cell)]);
+    const auto stride = static_cast<std::size_t>(BernsteinCount(m_Model.maximumDegree));
+    return BernsteinValue(m_Model.degree[cell], &m_Model.coefficients[cell * stride], place.mu);
+  }
+
+private:
+  static std::vector<IdType>
+  CellsOf(const MeshArrays & model, int region)
+  {
+    std::vector<IdType> cells;
+    const bool          any = std::count(model.region.begin(), model.region.end(), region) == 0;
+    for (std::size_t t = 0; t < model.tetrahedra.size(); ++t)
+    {
+      if (any || model.region[t] == region)
+      {
+        cells.push_back(static_cast<IdType>(t));
+      }
+    }
+    return cells;
+  }
+
+  static MeshArrays
+  Part(const MeshArrays & model, const std::vector<IdType> & cells)
+  {
+    MeshArrays part;
+    part.points = model.points;
+    for (const IdType t : cells)
+    {
+      part.tetrahedra.push_back(model.tetrahedra[static_cast<std::size_t>(t)]);
+    }
+    part.neighbors = ComputeFaceNeighbors(part.tetrahedra);
+    return part;
+  }
+
+  const MeshArrays &  m_Model;
+  std::vector<IdType> m_Cells;
+  TetraLocator        m_Locator;
+};
+} // namespace
+
 void
 FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh)
 {
@@ -76,27 +138,26 @@ FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh)
     itkGenericExceptionMacro("The subject's mesh has no density to be taken over.");
   }
   const DensityFitKernel kernel(degree, DensityFitKernel::MinimumLattice(degree));
-  const TetraLocator     locator(model);
-  const auto             stride = static_cast<std::size_t>(BernsteinCount(model.maximumDegree));
   const auto             count = static_cast<std::size_t>(BernsteinCount(degree));
   mesh.maximumDegree = degree;
   mesh.quantity = model.quantity;
   mesh.degree.assign(mesh.tetrahedra.size(), degree);
   mesh.coefficients.assign(mesh.tetrahedra.size() * count, 0.0);
-  std::vector<double> values(kernel.SamplePoints().size());
-  IdType              hint = -1;
+  std::map<int, DensityLookup> lookups;
+  std::map<int, IdType>        hints;
+  std::vector<double>          values(kernel.SamplePoints().size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
   {
-    const Id4 & c = mesh.tetrahedra[t];
+    const int    region = mesh.region.empty() ? -1 : mesh.region[t];
+    const auto & lookup = lookups.try_emplace(region, model, region).first->second;
+    IdType &     hint = hints.try_emplace(region, -1).first->second;
+    const Id4 &  c = mesh.tetrahedra[t];
     for (std::size_t s = 0; s < values.size(); ++s)
     {
       const Barycentric & mu = kernel.SamplePoints()[s];
-      const Vector3       x =
-        mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] + mu[3] * mesh.points[c[3]];
-      const CellLocation place = locator.FindNearest(x, hint);
-      hint = place.cell;
-      const auto cell = static_cast<std::size_t>(place.cell);
-      values[s] = BernsteinValue(model.degree[cell], &model.coefficients[cell * stride], place.mu);
+      values[s] = lookup.Value(mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] +
+                                 mu[3] * mesh.points[c[3]],
+                               hint);
     }
     kernel.Fit(values.data(), &mesh.coefficients[t * count]);
   }
@@ -110,35 +171,84 @@ PopulationRegistration::PopulationRegistration(DensityMesh<double>::Pointer stan
   m_Register->SetStandard(m_Standard);
 }
 
-void
-PopulationRegistration::FitImage(const CTImage * ct, MeshArrays & mesh) const
+MeshArrays
+FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh)
 {
-  // The image is where the subject is: a reflected mesh goes back for the fit.
-  const bool                   mirrored = m_Registered && m_Register->GetReport().mirrored;
-  const std::vector<Vector3>   points = mesh.points;
-  DensityMesh<double>::Pointer placed = DensityMesh<double>::New();
-  mesh.points = mirrored ? ReflectPoints(points) : points;
+  // In voxels. Standard deviation of what the interpolation blurs: a step blurred by s, taken s deep, keeps its
+  // integral to second order. And how far a layer's density reaches into the next, by the scanner's blur and
+  // registration.
+  constexpr double blur = 0.2, reach = 0.8;
+  const auto       spacing = ct->GetSpacing();
+  const double     voxel = std::cbrt(spacing[0] * spacing[1] * spacing[2]);
+  auto             placed = DensityMesh<double>::New();
   placed->SetArrays(mesh);
   auto fit = DensityFitFilter<CTImage>::New();
   fit->SetImage(ct);
   fit->SetMesh(placed);
-  fit->SetDegree(m_Degree);
+  fit->SetDegree(degree);
+  fit->SetInterpolator(DensityInterpolator::CubicBSpline);
+  fit->SetSurfaceMargin(blur * voxel);
   fit->Update();
-  mesh = fit->GetOutput()->GetArrays();
-  mesh.points = points;
+  const MeshArrays whole = fit->GetOutput()->GetArrays();
+  fit->SetInterfaceMargin(reach * voxel);
+  fit->Update();
+  MeshArrays result = fit->GetOutput()->GetArrays();
+  const auto count = static_cast<Eigen::Index>(BernsteinCount(degree));
+  for (std::size_t t = 0; t < result.tetrahedra.size(); ++t)
+  {
+    const auto                              first = t * static_cast<std::size_t>(count);
+    const Eigen::Map<const Eigen::VectorXd> kept(&whole.coefficients[first], count);
+    Eigen::Map<Eigen::VectorXd>             varies(&result.coefficients[first], count);
+    varies.array() += kept.mean() - varies.mean(); // a polynomial's mean is that of its coefficients
+  }
+  return result;
 }
 
 MeshArrays
 PopulationRegistration::Bring(const TriangleSurface & surface, const CTImage * ct)
 {
   m_Register->SetSubjectSurface(surface);
+  return this->Register(nullptr, ct);
+}
+
+MeshArrays
+PopulationRegistration::Bring(MeshArrays own, const CTImage * ct)
+{
+  if (own.tetrahedra == m_Standard->GetTetrahedra() && own.points.size() == m_Standard->GetNumberOfPoints())
+  {
+    m_Registered = false;
+    return ct != nullptr ? FitDensityOfImage(ct, m_Degree, own) : own;
+  }
+  if (own.neighbors.empty())
+  {
+    own.neighbors = ComputeFaceNeighbors(own.tetrahedra);
+  }
+  auto subject = DensityMesh<double>::New();
+  subject->SetArrays(own);
+  m_Register->SetSubject(subject);
+  return this->Register(&own, ct);
+}
+
+MeshArrays
+PopulationRegistration::Register(const MeshArrays * own, const CTImage * ct)
+{
   m_Register->Update();
   m_Registered = true;
-  MeshArrays mesh = m_Register->GetOutput()->GetArrays();
+  MeshArrays                 mesh = m_Register->GetOutput()->GetArrays();
+  const std::vector<Vector3> points = mesh.points;
+  if (m_Register->GetReport().mirrored)
+  {
+    mesh.points = ReflectPoints(points); // the density is where the subject is
+  }
   if (ct != nullptr)
   {
-    this->FitImage(ct, mesh);
+    mesh = FitDensityOfImage(ct, m_Degree, mesh);
   }
+  else if (own != nullptr && own->HasDensity())
+  {
+    FitDensityOfModel(*own, m_Degree, mesh);
+  }
+  mesh.points = points;
   return mesh;
 }
 
@@ -146,34 +256,7 @@ MeshArrays
 PopulationRegistration::Bring(const SubjectFiles & subject)
 {
   const CTImage::Pointer ct = subject.ct.empty() ? nullptr : ReadCT(subject.ct);
-  if (!IsMesh(subject.shape))
-  {
-    return this->Bring(ReadTriangleSurface(subject.shape), ct);
-  }
-  MeshArrays own = ReadMeshArrays(subject.shape);
-  if (own.tetrahedra == m_Standard->GetTetrahedra() && own.points.size() == m_Standard->GetNumberOfPoints())
-  {
-    m_Registered = false;
-    if (ct != nullptr)
-    {
-      this->FitImage(ct, own);
-    }
-    return own;
-  }
-  std::vector<IdType> id;
-  if (own.neighbors.empty())
-  {
-    own.neighbors = ComputeFaceNeighbors(own.tetrahedra);
-  }
-  MeshArrays mesh = this->Bring(ExteriorSurface(own, id), ct);
-  if (ct == nullptr && own.HasDensity())
-  {
-    MeshArrays placed = mesh;
-    placed.points = m_Register->GetReport().mirrored ? ReflectPoints(mesh.points) : mesh.points;
-    FitDensityOfModel(own, m_Degree, placed);
-    placed.points = mesh.points;
-    mesh = std::move(placed);
-  }
-  return mesh;
+  return IsMesh(subject.shape) ? this->Bring(ReadMeshArrays(subject.shape), ct)
+                               : this->Bring(ReadTriangleSurface(subject.shape), ct);
 }
 } // namespace bone

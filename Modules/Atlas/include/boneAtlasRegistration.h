@@ -35,8 +35,8 @@ struct RegistrationParameters
   DeformationMethod          method{ DeformationMethod::AdaptiveFocus };
   AdaptiveFocusParameters    focus;
   NonRigidICPParameters      nonRigid;
-  int                        facetPasses{ 2 };  ///< of FitFacets after the deformation; 0: vertices lie on the subject
-  double                     facetBound{ 0.5 }; ///< of these passes, mm
+  FacetFitParameters         facets;                                   ///< after the deformation
+  FacetFitParameters         layers{ { 8, 4, 2, 1, 0, 0 }, 4.0, 5.0 }; ///< of the surfaces between layers
   InteriorRule               interior{ InteriorRule::Harmonic };
   UntanglingParameters       untangling;
 };
@@ -44,13 +44,27 @@ struct RegistrationParameters
 /** What a registration did. */
 struct RegistrationReport
 {
-  AffineMap        alignment;                ///< standard -> subject (reflected, where mirrored)
-  double           alignmentDistance{ 0.0 }; ///< root mean square of the pairs that count, mm
-  bool             mirrored{ false };        ///< the subject was reflected at x = 0 first, and the result lies there
-  double           surfaceDistance{ 0.0 };   ///< mean distance of the model's exterior points to the subject, mm
-  double           subjectDistance{ 0.0 };   ///< mean distance of the subject's points to the model, mm
-  UntanglingReport untangling;
+  AffineMap alignment;                ///< standard -> subject (reflected, where mirrored)
+  double    alignmentDistance{ 0.0 }; ///< root mean square of the pairs that count, mm
+  bool      mirrored{ false };        ///< the subject was reflected at x = 0 first, and the result lies there
+  double    surfaceDistance{ 0.0 };   ///< mean distance of the model's exterior points to the subject, mm
+  double    subjectDistance{ 0.0 };   ///< mean distance of the subject's points to the model, mm
+  /** Mean distance of the points of each surface between layers to the subject's, mm; -1 where the subject has none. */
+  std::vector<double> layerDistance;
+  UntanglingReport    untangling;
 };
+
+/** A subject's surfaces. */
+struct SubjectSurfaces
+{
+  TriangleSurface exterior;
+  /** inner[k]: the boundary of the regions from k + 2 inward; empty where they are not there. */
+  std::vector<TriangleSurface> inner;
+};
+
+/** All surfaces of a layered mesh. */
+SubjectSurfaces
+SurfacesOf(const MeshArrays & mesh);
 
 /** x -> -x in the first coordinate. */
 std::vector<Vector3>
@@ -63,15 +77,16 @@ ReflectPoints(std::vector<Vector3> points);
 class StandardModel
 {
 public:
-  /** Takes points, tetrahedra and neighbours (computed where absent). Throws std::invalid_argument where there are no
-   * tetrahedra, or flat or inverted ones. */
+  /** Takes points, tetrahedra, regions and neighbours (computed where absent). Throws std::invalid_argument where there
+   * are no tetrahedra, or flat or inverted ones. */
   explicit StandardModel(const MeshArrays & mesh);
 
-  /** The mesh's points on the subject, and what was done. Throws std::invalid_argument where the subject has no
+  /** The mesh's points on the subject, and what was done. Surfaces between layers are laid on the subject's where it
+   * gives them; else interior points follow the exterior. Throws std::invalid_argument where the subject has no
    * surface, std::runtime_error with their number where tetrahedra are left inverted. */
   std::vector<Vector3>
   Register(
-    const TriangleSurface &             subject,
+    const SubjectSurfaces &             subject,
     const RegistrationParameters &      parameters,
     RegistrationReport &                report,
     const std::function<void(double)> & progress = [](double) {}) const;
@@ -89,10 +104,28 @@ public:
   }
 
 private:
+  /** A surface between layers and the mesh's ids of its points. */
+  struct LayerSurface
+  {
+    TriangleSurface     surface;
+    std::vector<IdType> id;
+    std::vector<char>   exterior; ///< marks its points that are exterior
+  };
+
+  void
+  FitLayers(const std::vector<TriangleSurface> & target,
+            const RegistrationParameters &       parameters,
+            const AffineMap &                    alignment,
+            std::vector<Vector3> &               points,
+            RegistrationReport &                 report) const;
+
   MeshArrays                           m_Mesh;
   std::vector<IdType>                  m_SurfaceId;
   TriangleSurface                      m_Surface;
+  std::vector<LayerSurface>            m_Layers;
+  std::vector<IdType>                  m_FixedId; ///< exterior points and those of surfaces between layers
   std::unique_ptr<InteriorDeformation> m_Interior;
+  std::unique_ptr<InteriorDeformation> m_BetweenLayers; ///< with m_FixedId given
 };
 } // namespace bone
 

@@ -15,14 +15,15 @@ namespace bone
 /** \class AtlasRegistrationFilter
  * \brief Carries a standard model to a subject: same topology, the subject's shape (paper 6.1).
  *
- * Inputs: the standard model, a mesh of positive tetrahedra, and the subject, either a mesh, whose exterior surface is
- * taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra, layers, slices and regions
- * on points that lie on the subject; no density, which is fitted after (DensityFitFilter).
+ * Inputs: the standard model, a mesh of positive tetrahedra, and the subject, either a mesh, whose exterior surface and
+ * surfaces between layers are taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra,
+ * layers, slices and regions on points that lie on the subject; no density, which is fitted after (DensityFitFilter).
  *
  * 1. Alignment by principal axes and iterative closest points, affine by default (\ref AlignSurfaces).
  * 2. The exterior surface is deformed: adaptive focus (default, \ref DeformAdaptiveFocus) or non-rigid ICP
  *    (\ref DeformNonRigidICP), then its facets are laid on the subject (\ref FitFacets).
  * 3. Interior points follow: a harmonic displacement (default) or the paper's eigen-frames (\ref InteriorDeformation).
+ *    Then the surfaces between layers are laid on the subject's, if it is a layered mesh and FitLayers is on (default).
  * 4. Inverted tetrahedra are repaired within bounds (\ref UntangleMesh). If some are left, the filter throws and says
  *    how many: no inverted tetrahedron leaves it.
  *
@@ -47,9 +48,10 @@ public:
 
   itkSetInputMacro(Standard, TMesh);
   itkGetInputMacro(Standard, TMesh);
-  itkSetInputMacro(Subject, TMesh);
+  /** The subject is what was set last: a mesh or a surface. */
+  void
+  SetSubject(const TMesh * mesh);
   itkGetInputMacro(Subject, TMesh);
-  /** In place of a subject's mesh. */
   void
   SetSubjectSurface(const TriangleSurface & surface);
 
@@ -66,6 +68,10 @@ public:
   itkGetEnumMacro(Method, DeformationMethod);
   itkSetEnumMacro(Interior, InteriorRule);
   itkGetEnumMacro(Interior, InteriorRule);
+  /** Whether surfaces between layers are laid on the subject's; default true. */
+  itkSetMacro(FitLayers, bool);
+  itkGetConstMacro(FitLayers, bool);
+  itkBooleanMacro(FitLayers);
   /** How far the repair may move exterior points, mm; default 0.5. */
   itkSetMacro(ExteriorBound, double);
   itkGetConstMacro(ExteriorBound, double);
@@ -94,13 +100,14 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  TriangleSurface
+  SubjectSurfaces
   TakeSubject() const;
 
   AlignmentKind                  m_Alignment{ AlignmentKind::Affine };
   MirrorMode                     m_Mirror{ MirrorMode::Never };
   DeformationMethod              m_Method{ DeformationMethod::AdaptiveFocus };
   InteriorRule                   m_Interior{ InteriorRule::Harmonic };
+  bool                           m_FitLayers{ true };
   double                         m_ExteriorBound{ 0.5 };
   RegistrationReport             m_Report;
   std::unique_ptr<StandardModel> m_Standard; // of the standard it was made of, for a population of subjects

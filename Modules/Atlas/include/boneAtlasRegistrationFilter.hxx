@@ -27,8 +27,17 @@ AtlasRegistrationFilter<TMesh>::MakeOutput(itk::ProcessObject::DataObjectPointer
 
 template <typename TMesh>
 void
+AtlasRegistrationFilter<TMesh>::SetSubject(const TMesh * mesh)
+{
+  this->ProcessObject::RemoveInput("SubjectSurface");
+  this->ProcessObject::SetInput("Subject", const_cast<TMesh *>(mesh));
+}
+
+template <typename TMesh>
+void
 AtlasRegistrationFilter<TMesh>::SetSubjectSurface(const TriangleSurface & surface)
 {
+  this->ProcessObject::RemoveInput("Subject");
   auto * decorator = static_cast<SurfaceType *>(this->ProcessObject::GetInput("SubjectSurface"));
   if (decorator == nullptr)
   {
@@ -59,9 +68,9 @@ void
 AtlasRegistrationFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
 {
   Superclass::VerifyPreconditions();
-  if ((this->GetSubject() == nullptr) == (this->ProcessObject::GetInput("SubjectSurface") == nullptr))
+  if (this->GetSubject() == nullptr && this->ProcessObject::GetInput("SubjectSurface") == nullptr)
   {
-    itkExceptionMacro("Give the subject as a mesh or as a surface, one of the two.");
+    itkExceptionMacro("Give the subject as a mesh or as a surface.");
   }
   if (m_Alignment == AlignmentKind::None)
   {
@@ -74,15 +83,19 @@ AtlasRegistrationFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
 }
 
 template <typename TMesh>
-TriangleSurface
+SubjectSurfaces
 AtlasRegistrationFilter<TMesh>::TakeSubject() const
 {
   if (this->GetSubject() == nullptr)
   {
-    return static_cast<const SurfaceType *>(this->ProcessObject::GetInput("SubjectSurface"))->Get();
+    return { static_cast<const SurfaceType *>(this->ProcessObject::GetInput("SubjectSurface"))->Get(), {} };
   }
-  std::vector<IdType> id;
-  return ExteriorSurface(this->GetSubject()->GetArrays(), id);
+  SubjectSurfaces surfaces = SurfacesOf(this->GetSubject()->GetArrays());
+  if (!m_FitLayers)
+  {
+    surfaces.inner.clear();
+  }
+  return surfaces;
 }
 
 template <typename TMesh>
@@ -136,6 +149,7 @@ AtlasRegistrationFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent)
   os << indent << "Mirror: " << static_cast<int>(m_Mirror) << std::endl;
   os << indent << "Method: " << static_cast<int>(m_Method) << std::endl;
   os << indent << "Interior: " << static_cast<int>(m_Interior) << std::endl;
+  os << indent << "FitLayers: " << (m_FitLayers ? "On" : "Off") << std::endl;
   os << indent << "ExteriorBound: " << m_ExteriorBound << std::endl;
 }
 } // namespace bone

@@ -57,14 +57,26 @@ DeformNonRigidICP(const TriangleSurface &       source,
                   const DirectedSurface &       target,
                   const NonRigidICPParameters & parameters);
 
+/** Parameters of \ref FitFacets. */
+struct FacetFitParameters
+{
+  std::vector<int> smoothing{ 0, 0 }; ///< one a pass: how often the moves are averaged over neighbours
+  double           bound{ 0.5 };      ///< how far a vertex may move in all passes, mm
+  double           reach{ 5.0 };      ///< farther off the target is none, mm
+};
+
 /** \brief Moves vertices along their normals so that the facets, not the vertices, lie on the target.
  *
  * A surface whose vertices lie on a bone cuts off its bulges and fills its hollows by the sagitta of its facets, which
  * takes mass off the bone. Each pass moves a vertex by the mean signed distance of the facets around it, at seven
  * places of each, weighted by its shape function and their area; two passes are near enough to the least-squares
- * solution. No vertex leaves its place by more than `bound`, mm. The same for any number of threads. */
+ * solution from nearby. Moves are smoothed over the surface first where it is farther off. Vertices with a mark in
+ * `fixed` (empty: none) stay. The same for any number of threads. */
 void
-FitFacets(TriangleSurface & surface, const DirectedSurface & target, int passes, double bound);
+FitFacets(TriangleSurface &          surface,
+          const DirectedSurface &    target,
+          const FacetFitParameters & parameters,
+          const std::vector<char> &  fixed = {});
 
 /** Rings of neighbours of every vertex: ring[v] lists vertices in order of rings, start[v][r] where ring r begins;
  * ring 0 is the vertex itself. */

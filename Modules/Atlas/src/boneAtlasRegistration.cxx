@@ -6,6 +6,7 @@
 #include "boneParallelLoop.h"
 #include "boneQualityMeasures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -25,6 +26,16 @@ Reflect(TriangleSurface surface)
   return surface;
 }
 
+std::vector<TriangleSurface>
+ReflectAll(std::vector<TriangleSurface> surfaces)
+{
+  for (TriangleSurface & surface : surfaces)
+  {
+    surface = Reflect(std::move(surface));
+  }
+  return surfaces;
+}
+
 MeshArrays
 TakeStandard(const MeshArrays & mesh)
 {
@@ -39,6 +50,7 @@ TakeStandard(const MeshArrays & mesh)
   MeshArrays standard;
   standard.points = mesh.points;
   standard.tetrahedra = mesh.tetrahedra;
+  standard.region = mesh.region;
   standard.neighbors = mesh.neighbors.empty() ? ComputeFaceNeighbors(mesh.tetrahedra) : mesh.neighbors;
   return standard;
 }
@@ -68,18 +80,92 @@ ReflectPoints(std::vector<Vector3> points)
   return points;
 }
 
+SubjectSurfaces
+SurfacesOf(const MeshArrays & mesh)
+{
+  SubjectSurfaces     surfaces;
+  std::vector<IdType> id;
+  surfaces.exterior = ExteriorSurface(mesh, id);
+  const int innermost = mesh.region.empty() ? 0 : *std::max_element(mesh.region.begin(), mesh.region.end());
+  for (int least = 2; least <= innermost; ++least)
+  {
+    surfaces.inner.push_back(ExteriorSurface(mesh, id, least));
+  }
+  return surfaces;
+}
+
 StandardModel::StandardModel(const MeshArrays & mesh)
   : m_Mesh(TakeStandard(mesh))
   , m_Surface(ExteriorSurface(m_Mesh, m_SurfaceId))
+  , m_FixedId(m_SurfaceId)
   , m_Interior(std::make_unique<InteriorDeformation>(m_Mesh, m_SurfaceId))
-{}
+{
+  const int innermost = m_Mesh.region.empty() ? 0 : *std::max_element(m_Mesh.region.begin(), m_Mesh.region.end());
+  for (int least = 2; least <= innermost; ++least)
+  {
+    LayerSurface layer;
+    layer.surface = ExteriorSurface(m_Mesh, layer.id, least);
+    for (const IdType p : layer.id)
+    {
+      layer.exterior.push_back(std::binary_search(m_SurfaceId.begin(), m_SurfaceId.end(), p));
+    }
+    m_FixedId.insert(m_FixedId.end(), layer.id.begin(), layer.id.end());
+    m_Layers.push_back(std::move(layer));
+  }
+  if (!m_Layers.empty())
+  {
+    std::sort(m_FixedId.begin(), m_FixedId.end());
+    m_FixedId.erase(std::unique(m_FixedId.begin(), m_FixedId.end()), m_FixedId.end());
+    m_BetweenLayers = std::make_unique<InteriorDeformation>(m_Mesh, m_FixedId);
+  }
+}
+
+void
+StandardModel::FitLayers(const std::vector<TriangleSurface> & target,
+                         const RegistrationParameters &       parameters,
+                         const AffineMap &                    alignment,
+                         std::vector<Vector3> &               points,
+                         RegistrationReport &                 report) const
+{
+  bool any = false;
+  for (std::size_t k = 0; k < m_Layers.size(); ++k)
+  {
+    report.layerDistance.push_back(-1.0);
+    if (k < target.size() && !target[k].triangles.empty())
+    {
+      const DirectedSurface there(target[k]);
+      TriangleSurface       moved = m_Layers[k].surface;
+      for (std::size_t i = 0; i < moved.points.size(); ++i)
+      {
+        moved.points[i] = points[m_Layers[k].id[i]];
+      }
+      FitFacets(moved, there, parameters.layers, m_Layers[k].exterior);
+      report.layerDistance.back() = MeanDistance(moved.points, there);
+      for (std::size_t i = 0; i < moved.points.size(); ++i)
+      {
+        points[m_Layers[k].id[i]] = moved.points[i];
+      }
+      any = true;
+    }
+  }
+  if (any)
+  {
+    std::vector<Vector3> fixed;
+    for (const IdType p : m_FixedId)
+    {
+      fixed.push_back(points[p]);
+    }
+    points = m_BetweenLayers->Deform(InteriorRule::Harmonic, alignment, fixed);
+  }
+}
 
 std::vector<Vector3>
-StandardModel::Register(const TriangleSurface &             subject,
+StandardModel::Register(const SubjectSurfaces &             subjects,
                         const RegistrationParameters &      parameters,
                         RegistrationReport &                report,
                         const std::function<void(double)> & progress) const
 {
+  const TriangleSurface & subject = subjects.exterior;
   if (subject.triangles.empty())
   {
     throw std::invalid_argument("The subject has no surface.");
@@ -114,9 +200,14 @@ StandardModel::Register(const TriangleSurface &             subject,
   moved.points = parameters.method == DeformationMethod::AdaptiveFocus
                    ? DeformAdaptiveFocus(moved, *target, parameters.focus)
                    : DeformNonRigidICP(moved, *target, parameters.nonRigid);
-  FitFacets(moved, *target, parameters.facetPasses, parameters.facetBound);
+  FitFacets(moved, *target, parameters.facets);
   progress(0.9);
   std::vector<Vector3> points = m_Interior->Deform(parameters.interior, aligned.map, moved.points);
+  if (!subjects.inner.empty())
+  {
+    this->FitLayers(
+      report.mirrored ? ReflectAll(subjects.inner) : subjects.inner, parameters, aligned.map, points, report);
+  }
   report.untangling = UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling);
   if (report.untangling.after > 0)
   {

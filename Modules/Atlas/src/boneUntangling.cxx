@@ -63,14 +63,11 @@ public:
     {
       return report;
     }
-    for (int i = 0; i<m_P.iterations && this->CountBad(m_P.floor)> 0; ++i)
+    // Exterior points stay where the others can do it alone.
+    this->Work(false);
+    if (m_P.exteriorBound > 0 && this->CountBad(0.0) > 0)
     {
-      const std::vector<IdType> patch = this->Patch();
-      this->SetRegularisation();
-      for (const IdType p : patch)
-      {
-        this->Improve(p);
-      }
+      this->Work(true);
     }
     report.after = this->CountBad(0.0);
     for (std::size_t p = 0; p < m_Points.size(); ++p)
@@ -83,6 +80,23 @@ public:
   }
 
 private:
+  void
+  Work(bool moveExterior)
+  {
+    for (int i = 0; i<m_P.iterations && this->CountBad(m_P.floor)> 0; ++i)
+    {
+      const std::vector<IdType> patch = this->Patch();
+      this->SetRegularisation();
+      for (const IdType p : patch)
+      {
+        if (moveExterior || m_Exterior[p] == 0)
+        {
+          this->Improve(p);
+        }
+      }
+    }
+  }
+
   Eigen::Matrix3d
   Jacobian(IdType t) const
   {

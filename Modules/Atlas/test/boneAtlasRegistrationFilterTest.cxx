@@ -151,6 +151,7 @@ TEST(AtlasRegistrationFilter, SurfaceOrMeshIsTheSameSubject)
   MeshArrays       subject = standard;
   Bend(subject.points, 0.5);
   const auto mesh = Filter(standard, subject);
+  mesh->FitLayersOff();
   mesh->Update();
   std::vector<IdType> id;
   auto                surface = AtlasRegistrationFilter<>::New();
@@ -162,6 +163,66 @@ TEST(AtlasRegistrationFilter, SurfaceOrMeshIsTheSameSubject)
   surface->SetSubjectSurface(ExteriorSurface(subject, id));
   surface->Update();
   EXPECT_EQ(surface->GetOutput()->GetMTime(), before);
+}
+
+/** Moves the surface between layers outward, by more than half of the outer layer's thickness at most. */
+MeshArrays
+WithThinnerLayer(MeshArrays mesh)
+{
+  std::vector<IdType>   exteriorId, innerId;
+  const TriangleSurface exterior = ExteriorSurface(mesh, exteriorId), inner = ExteriorSurface(mesh, innerId, 2);
+  const auto            normals = PointNormals(inner);
+  for (std::size_t i = 0; i < innerId.size(); ++i)
+  {
+    if (!std::binary_search(exteriorId.begin(), exteriorId.end(), innerId[i]))
+    {
+      mesh.points[innerId[i]] += 1.0 * normals[i];
+    }
+  }
+  return mesh;
+}
+
+TEST(AtlasRegistrationFilter, SurfacesBetweenLayersAreLaidOnTheSubjects)
+{
+  const MeshArrays standard = Standard();
+  MeshArrays       subject = WithThinnerLayer(standard);
+  ASSERT_EQ(CountInverted(subject), 0u);
+  Bend(subject.points, 0.5);
+  Move(RandomPose(4), subject.points);
+  std::vector<IdType> id;
+  const double        volume = EnclosedVolume(ExteriorSurface(subject, id, 2));
+  double              error[2];
+  for (const bool fit : { false, true })
+  {
+    const auto filter = Filter(standard, subject);
+    filter->SetFitLayers(fit);
+    filter->Update();
+    const MeshArrays & result = filter->GetOutput()->GetArrays();
+    EXPECT_EQ(CountInverted(result), 0u);
+    EXPECT_EQ(filter->GetReport().layerDistance.size(), fit ? 1u : 0u);
+    error[fit] = std::abs(EnclosedVolume(ExteriorSurface(result, id, 2)) / volume - 1.0);
+    if (fit)
+    {
+      EXPECT_LT(filter->GetReport().layerDistance[0], 0.2);
+    }
+  }
+  EXPECT_GT(error[0], 0.1); // there is something to be laid
+  EXPECT_LT(error[1], 0.03);
+}
+
+TEST(AtlasRegistrationFilter, LayersOfAMirroredSubject)
+{
+  const MeshArrays    standard = Standard();
+  MeshArrays          subject = WithThinnerLayer(standard);
+  std::vector<IdType> id;
+  const double        volume = EnclosedVolume(ExteriorSurface(subject, id, 2));
+  subject.points = ReflectPoints(subject.points);
+  MakePositive(subject);
+  const auto filter = Filter(standard, subject);
+  filter->SetMirror(MirrorMode::Try);
+  filter->Update();
+  EXPECT_TRUE(filter->GetReport().mirrored);
+  EXPECT_NEAR(EnclosedVolume(ExteriorSurface(filter->GetOutput()->GetArrays(), id, 2)) / volume, 1.0, 0.03);
 }
 
 TEST(AtlasRegistrationFilter, IsTheSameForAnyNumberOfThreads)
@@ -276,15 +337,15 @@ TEST(FitFacets, GivesACoarseBallTheVolumeOfAFineOne)
   const DirectedSurface target(fine);
   const double          volume = EnclosedVolume(fine);
   const TriangleSurface before = coarse;
-  FitFacets(coarse, target, 0, 5.0);
+  FitFacets(coarse, target, { {}, 5.0 });
   EXPECT_EQ(coarse.points, before.points);
   const double lack = volume - EnclosedVolume(coarse);
   ASSERT_GT(lack, 0.05 * volume);
-  FitFacets(coarse, target, 2, 5.0);
+  FitFacets(coarse, target, { { 0, 0 }, 5.0 });
   EXPECT_LT(std::abs(volume - EnclosedVolume(coarse)), 0.1 * lack);
 
   TriangleSurface bounded = before;
-  FitFacets(bounded, target, 2, 0.25);
+  FitFacets(bounded, target, { { 0, 0 }, 0.25 });
   for (std::size_t v = 0; v < bounded.points.size(); ++v)
   {
     EXPECT_LE((bounded.points[v] - before.points[v]).norm(), 0.25 + 1e-12);
@@ -297,7 +358,7 @@ TEST(FitFacets, LeavesASurfaceThatLiesOnTheTarget)
   TriangleSurface       surface = ExteriorSurface(Standard(), id);
   const auto            points = surface.points;
   const DirectedSurface target(surface);
-  FitFacets(surface, target, 3, 0.5);
+  FitFacets(surface, target, { { 0, 0, 0 }, 0.5 });
   EXPECT_LT(MeanDistance(surface.points, points),
             0.005); // none but at the sharp edges of the ends, where normals differ
 }

@@ -28,10 +28,10 @@ struct TriangleSurface
   }
 };
 
-/** The exterior surface of a tetrahedral mesh, with its own numbering in ascending order of the mesh's points; pointId:
- * the mesh's id of each. Needs neighbors. */
+/** The exterior surface of the regions from `least` inward of a tetrahedral mesh (0: of the whole mesh), with its own
+ * numbering in ascending order of the mesh's points; pointId: the mesh's id of each. Needs neighbors. */
 TriangleSurface
-ExteriorSurface(const MeshArrays & mesh, std::vector<IdType> & pointId);
+ExteriorSurface(const MeshArrays & mesh, std::vector<IdType> & pointId, int least = 0);
 
 /** Unit normals of the points, outward, area-weighted; zero where a point has none. */
 std::vector<Vector3>

@@ -6,11 +6,11 @@
 namespace bone
 {
 TriangleSurface
-ExteriorSurface(const MeshArrays & mesh, std::vector<IdType> & pointId)
+ExteriorSurface(const MeshArrays & mesh, std::vector<IdType> & pointId, int least)
 {
   TriangleSurface     surface;
   std::vector<IdType> number(mesh.points.size(), -1);
-  surface.triangles = BoundaryFaces(mesh);
+  surface.triangles = BoundaryFaces(mesh, least);
   for (const auto & triangle : surface.triangles)
   {
     for (const IdType p : triangle)
