@@ -4,8 +4,8 @@
     BONETK_DATA=... Testing/Validation/atlas.py BUILD_FOLDER [--scratch FOLDER] [--only registration|population|memory]
 
 makes the standard models with bonetk, registers them to the surfaces in BONETK_DATA/femur_shapes (each in a random pose, its
-vertices shuffled) and to phantom hemipelves, trains, and writes Documentation/validation/atlas.md. With --only the other
-parts are taken from the last run in the scratch folder. About an hour on two cores, most of it for 1,000 subjects."""
+vertices shuffled) and to models of scanned phantom hemipelves, trains, and writes Documentation/validation/atlas.md. With --only the other
+parts are taken from the last run in the scratch folder. About 20 minutes on two cores."""
 
 import argparse
 import json
@@ -55,7 +55,7 @@ class Validation:
         self.rows("icp", "icp", standard, first, *few)
 
     def population(self):
-        self.rows("population", "population", self.standard("hemipelvis", ["--bone", "hemipelvis"], "z", 30000), 30)
+        self.rows("population", "population", self.standard("hemipelvis", ["--bone", "hemipelvis"], "z", 30000), 30, 1)
 
     def memory(self):
         self.rows("memory", "memory", self.scratch / "femur" / "model_L1.vtu", 1000)
@@ -115,25 +115,30 @@ def population_section(scratch):
     rows = read(scratch, "population")
     out = []
     subjects = [r for r in rows if "phantom" in r]
-    fitted = {r["fitted"]: r for r in rows if "correlation" in r}
-    if fitted:
+    trained = {r["product"]: r for r in rows if "correlation" in r}
+    if trained:
         factors = [r for r in rows if "factor" in r]
         names = list(dict.fromkeys(r["factor"] for r in factors))
-        explained = {(r["factor"], r["fitted"]): f"{r['explained']:.3f}" for r in factors}
-        means = {k: sum(r[k] for r in subjects) / len(subjects) for k in ("surface", "back", "volume")}
+        explained = {(r["factor"], r["product"]): f"{r['explained']:.3f}" for r in factors}
+        means = {k: sum(r[k] for r in subjects) / len(subjects) for k in ("cells", "surface", "back", "volume", "mass")}
+        layer = sum(r["layers"][0] for r in subjects) / len(subjects)
+        inner = sum(r["layerVolume"][0] for r in subjects) / len(subjects)
         out += ["\n## A population of known factors\n",
-                f"{len(subjects)} phantom hemipelves, three factors of shape and two of density, orthogonal over the subjects; each",
-                "registered from its surface, its density fitted in every cell: as an image shows it, with soft tissue where a facet",
-                "lies outside the bone; of the bone alone, whose cortex goes on there; of the cell's own layer, as if the layers'",
-                "surfaces were matched too. Share of each factor's variance that the first three modes of shape, or two of density,",
-                "explain:\n", "| factor | image | bone | layer |", "|---|---|---|---|"]
-        out += ["| " + " | ".join([name] + [explained[name, k] for k in fitted]) + " |" for name in names]
+                f"{len(subjects)} phantom hemipelves, three factors of shape and two of density, orthogonal over the subjects. Each is",
+                "scanned (1 mm, with the scanner's blur), goes through the whole chain to a layered mesh of its own slices and",
+                "cells, to which the standard model (another phantom's, of other cells) is registered by layers; density of degree 2",
+                "from the scan. Share of each factor's variance that the first three modes of shape, or two of density, explain, with",
+                "the inner product of densities by coefficients (the default, as in the paper) and by volume (`--volume-weighted`):\n",
+                "| factor | " + " | ".join(trained) + " |", "|---" * (1 + len(trained)) + "|"]
+        out += ["| " + " | ".join([name] + [explained[name, k] for k in trained]) + " |" for name in names]
         out.append("| largest correlation of these shape and density scores | "
-                   + " | ".join(f"{r['correlation']:.3f}" for r in fitted.values()) + " |")
-        out.append("| mass of the mean model to the phantom of mean factors, % | "
-                   + " | ".join(f"{100 * (r['mass'] / r['massOfPhantom'] - 1):+.2f}" for r in fitted.values()) + " |")
-        out.append(f"\nMeans over the subjects: surface {means['surface']:.3f} mm, back {means['back']:.3f} mm, volume "
-                   f"{100 * (means['volume'] - 1):+.2f} %.")
+                   + " | ".join(f"{r['correlation']:.3f}" for r in trained.values()) + " |")
+        out.append("| mass of the mean model to the scan of the phantom of mean factors, % | "
+                   + " | ".join(f"{100 * (r['mass'] - 1):+.2f}" for r in trained.values()) + " |")
+        out.append(f"\nMeans over the subjects: {means['cells']:.0f} cells of its own; surface {means['surface']:.3f} mm, back "
+                   f"{means['back']:.3f} mm, surface between layers {layer:.3f} mm; volume {100 * (means['volume'] - 1):+.2f} % and "
+                   f"mass {100 * (means['mass'] - 1):+.2f} % of the label's voxels, inner layer's volume {100 * (inner - 1):+.2f} % of "
+                   "its own mesh's.")
     return out
 
 

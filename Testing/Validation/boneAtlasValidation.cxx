@@ -5,21 +5,17 @@
 // Figures of the atlas, as JSON lines; atlas.py makes the report of them:
 //   boneAtlasValidation registration STANDARD.vtu REFERENCE.ply SUBJECT.ply...   correspondence is known
 //   boneAtlasValidation frames|icp ...                                           the same with the alternatives
-//   boneAtlasValidation population STANDARD.vtu SUBJECTS                         phantoms with known factors
+//   boneAtlasValidation population STANDARD.vtu SUBJECTS VOXEL                   scans of phantoms with known factors
 //   boneAtlasValidation memory MESH.vtu SUBJECTS                                 large training sets
 
 #include "boneAtlasRegistration.h"
-#include "boneDensityFitKernel.h"
+#include "boneBuildPipeline.h"
 #include "boneHemipelvisPhantom.h"
 #include "boneMeshIO.h"
 #include "boneModelEvaluation.h"
+#include "bonePhantomImageSource.h"
+#include "bonePopulation.h"
 #include "boneStatisticalModelEstimator.h"
-
-#include <vtkFlyingEdges3D.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
 
 #include <itkMultiThreaderBase.h>
 
@@ -133,7 +129,7 @@ Registration(const std::vector<std::string> & files, const RegistrationParameter
     const AffineMap      pose = Disguise(subject, static_cast<unsigned>(s + 1));
     RegistrationReport   report;
     const double         start = Cpu();
-    const auto           points = model.Register(subject, parameters, report);
+    const auto           points = model.Register({ subject, {} }, parameters, report);
     const double         seconds = Cpu() - start;
     std::vector<Vector3> surface;
     for (const IdType p : model.GetSurfacePointIds())
@@ -169,116 +165,6 @@ Registration(const std::vector<std::string> & files, const RegistrationParameter
   }
 }
 
-/** The periosteal surface of a phantom, from its function on a grid of 1 mm. */
-TriangleSurface
-SurfaceOf(const PhantomModel & phantom)
-{
-  constexpr double     Spacing = 1.0;
-  vtkNew<vtkImageData> grid;
-  double               origin[3];
-  int                  size[3];
-  for (int i = 0; i < 3; ++i)
-  {
-    const auto extent = phantom.GetExtent(Vector3::Unit(i));
-    origin[i] = extent.lower - 3 * Spacing;
-    size[i] = static_cast<int>((extent.upper - extent.lower) / Spacing) + 7;
-  }
-  grid->SetDimensions(size);
-  grid->SetOrigin(origin);
-  grid->SetSpacing(Spacing, Spacing, Spacing);
-  grid->AllocateScalars(VTK_DOUBLE, 1);
-  auto * values = static_cast<double *>(grid->GetScalarPointer());
-  itk::MultiThreaderBase::New()->ParallelizeArray(
-    0,
-    static_cast<itk::SizeValueType>(size[2]),
-    [&](itk::SizeValueType k) {
-      double * value = values + k * static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-      for (int j = 0; j < size[1]; ++j)
-      {
-        for (int i = 0; i < size[0]; ++i)
-        {
-          const Vector3 x(
-            origin[0] + Spacing * i, origin[1] + Spacing * j, origin[2] + Spacing * static_cast<double>(k));
-          *value++ = phantom.EvaluateLevels(x)[0];
-        }
-      }
-    },
-    nullptr);
-  vtkNew<vtkFlyingEdges3D> edges;
-  edges->SetInputData(grid);
-  edges->SetValue(0, 0.0);
-  edges->ComputeNormalsOff();
-  edges->Update();
-  vtkPolyData *   data = edges->GetOutput();
-  TriangleSurface surface;
-  for (vtkIdType p = 0; p < data->GetNumberOfPoints(); ++p)
-  {
-    surface.points.emplace_back(data->GetPoint(p));
-  }
-  for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
-  {
-    vtkIdType         count = 0;
-    const vtkIdType * ids = nullptr;
-    data->GetCellPoints(c, count, ids);
-    surface.triangles.push_back(
-      { static_cast<IdType>(ids[0]), static_cast<IdType>(ids[1]), static_cast<IdType>(ids[2]) });
-  }
-  if (EnclosedVolume(surface) < 0)
-  {
-    for (auto & t : surface.triangles)
-    {
-      std::swap(t[1], t[2]);
-    }
-  }
-  return surface;
-}
-
-/** What a density is fitted to. */
-enum class Fitted
-{
-  Image, ///< the phantom's density, with soft tissue where a facet lies outside the bone
-  Bone,  ///< there its cortex's, as far as it reaches
-  Layer  ///< in each cell the density of its own layer
-};
-
-double
-DensityAt(const PhantomModel & phantom, const Vector3 & x, int cellRegion, Fitted fitted)
-{
-  const auto levels = phantom.EvaluateLevels(x);
-  const int  there = PhantomModel::RegionOf(levels);
-  const int  region = fitted == Fitted::Layer                              ? cellRegion
-                      : fitted == Fitted::Bone && there == Region::Outside ? static_cast<int>(Region::Cortical)
-                                                                           : there;
-  return phantom.EvaluateMaterials(x, levels)[static_cast<std::size_t>(region)];
-}
-
-/** The phantom's own density in every cell, degree 2. */
-void
-FitPhantom(const PhantomModel & phantom, Fitted fitted, MeshArrays & mesh)
-{
-  constexpr int          Degree = 2;
-  const DensityFitKernel kernel(Degree, 6);
-  mesh.maximumDegree = Degree;
-  mesh.quantity = DensityQuantity::HounsfieldUnit;
-  mesh.degree.assign(mesh.tetrahedra.size(), Degree);
-  mesh.coefficients.resize(mesh.tetrahedra.size() * BernsteinCount(Degree));
-  itk::MultiThreaderBase::New()->ParallelizeArray(
-    0,
-    mesh.tetrahedra.size(),
-    [&](itk::SizeValueType t) {
-      const Id4 &         c = mesh.tetrahedra[t];
-      std::vector<double> values;
-      for (const Barycentric & mu : kernel.SamplePoints())
-      {
-        const Vector3 x =
-          mu[0] * mesh.points[c[0]] + mu[1] * mesh.points[c[1]] + mu[2] * mesh.points[c[2]] + mu[3] * mesh.points[c[3]];
-        values.push_back(DensityAt(phantom, x, mesh.region[t], fitted));
-      }
-      kernel.Fit(values.data(), &mesh.coefficients[t * BernsteinCount(Degree)]);
-    },
-    nullptr);
-}
-
 double
 VolumeOf(const MeshArrays & mesh)
 {
@@ -305,34 +191,36 @@ MassOf(const MeshArrays & mesh)
   return mass;
 }
 
-/** Integral of the phantom's density over its bone, by points half a millimetre apart. */
-double
-MassOf(const PhantomModel & phantom)
+/** A phantom's CT and its label map. */
+struct Scan
 {
-  constexpr double Spacing = 0.5;
-  const auto       x = phantom.GetExtent(Vector3::UnitX()), y = phantom.GetExtent(Vector3::UnitY()),
-             z = phantom.GetExtent(Vector3::UnitZ());
-  const auto          slices = static_cast<std::size_t>((z.upper - z.lower) / Spacing) + 1;
-  std::vector<double> mass(slices, 0.0);
-  itk::MultiThreaderBase::New()->ParallelizeArray(
-    0,
-    slices,
-    [&](itk::SizeValueType k) {
-      for (double b = y.lower; b < y.upper; b += Spacing)
+  Scan(const PhantomModel::Pointer & phantom, double voxel)
+  {
+    using Source = PhantomImageSource<CTImage>;
+    auto                source = Source::New();
+    Source::SpacingType spacing;
+    spacing.Fill(voxel);
+    source->SetModel(phantom);
+    source->SetSpacing(spacing);
+    source->Update();
+    ct = source->GetOutput();
+    labels = source->GetLabelOutput();
+    const std::size_t count = ct->GetBufferedRegion().GetNumberOfPixels();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      if (labels->GetBufferPointer()[i] > 0)
       {
-        for (double a = x.lower; a < x.upper; a += Spacing)
-        {
-          const Vector3 point(a, b, z.lower + Spacing * static_cast<double>(k));
-          if (phantom.Region(point) != Region::Outside)
-          {
-            mass[k] += phantom.Density(point) * Spacing * Spacing * Spacing;
-          }
-        }
+        volume += voxel * voxel * voxel;
+        mass += ct->GetBufferPointer()[i] * voxel * voxel * voxel;
       }
-    },
-    nullptr);
-  return std::accumulate(mass.begin(), mass.end(), 0.0);
-}
+    }
+  }
+
+  CTImage::Pointer    ct;
+  LabelImage::Pointer labels;
+  double              volume{ 0 }; ///< of the label's voxels, mm^3
+  double              mass{ 0 };   ///< integral of the CT over them
+};
 
 /** Share of a factor's variance that the scores of the first modes explain. */
 double
@@ -376,67 +264,83 @@ ParametersOf(const Eigen::MatrixXd & factors, Eigen::Index i)
 
 /** Trains on the subjects and prints what the first modes explain of the factors. */
 void
-PrintFactors(const char * fitted, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors)
+PrintFactors(bool weighted, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors, double mass)
 {
   auto estimator = StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
   estimator->SetVarianceProportion(1.0); // all modes: the third of shape is beyond 98 % of the variance
+  estimator->SetVolumeWeighted(weighted);
   estimator->Update();
   const auto &          content = estimator->GetOutput()->GetContent();
   const Eigen::MatrixXd shape = content.shapeScores.leftCols(3), density = content.densityScores.leftCols(2);
   const char *          names[5] = {
              "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density"
   };
+  const char * product = weighted ? "volume" : "coefficients";
   for (Eigen::Index f = 0; f < 5; ++f)
   {
-    std::cout << json{
-      { "fitted", fitted }, { "factor", names[f] }, { "explained", Explained(factors.col(f), f < 3 ? shape : density) }
-    } << std::endl;
+    std::cout << json{ { "product", product },
+                       { "factor", names[f] },
+                       { "explained", Explained(factors.col(f), f < 3 ? shape : density) } }
+              << std::endl;
   }
   const double across = (shape.transpose() * density / static_cast<double>(factors.rows() - 1)).cwiseAbs().maxCoeff();
-  std::cout << json{ { "fitted", fitted },
-                     { "correlation", across },
-                     { "mass", MassOf(content.mean) },
-                     { "massOfPhantom", MassOf(HemipelvisPhantom()) } }
+  std::cout << json{ { "product", product }, { "correlation", across }, { "mass", MassOf(content.mean) / mass } }
             << std::endl;
 }
 
-void
-Population(const std::string & standard, Eigen::Index subjects)
+/** What the toolkit's chain makes of a scan: slices and cells of its own. */
+MeshArrays
+Build(const Scan & scan)
 {
-  const MeshArrays                                   mesh = ReadMeshArrays(standard);
-  const StandardModel                                model(mesh);
-  const Eigen::MatrixXd                              factors = Factors(subjects);
-  const std::vector<std::pair<const char *, Fitted>> kinds = { { "image", Fitted::Image },
-                                                               { "bone", Fitted::Bone },
-                                                               { "layer", Fitted::Layer } };
-  std::vector<MeshTrainingSet<>::Pointer>            sets;
-  std::generate_n(std::back_inserter(sets), kinds.size(), [] { return MeshTrainingSet<>::New(); });
+  BuildPipeline pipeline(/* levels */ 1);
+  pipeline.SetImage(scan.ct);
+  pipeline.SetLabelImage(scan.labels);
+  pipeline.GetSnake()->SetSliceStep(2.5);
+  pipeline.SetContourSpacing(5.0);
+  pipeline.GetQuality()->Update();
+  return pipeline.GetQuality()->GetOutput()->GetArrays();
+}
+
+void
+Population(const std::string & standard, Eigen::Index subjects, double voxel)
+{
+  auto mesh = DensityMesh<double>::New();
+  mesh->SetArrays(ReadMeshArrays(standard));
+  PopulationRegistration population(mesh, /* degree */ 2);
+  const Eigen::MatrixXd  factors = Factors(subjects);
+  auto                   set = MeshTrainingSet<>::New();
   for (Eigen::Index i = 0; i < subjects; ++i)
   {
-    const HemipelvisPhantom phantom(ParametersOf(factors, i));
-    const TriangleSurface   surface = SurfaceOf(phantom);
-    RegistrationReport      report;
-    MeshArrays              subject = mesh;
-    subject.points = model.Register(surface, RegistrationParameters(), report);
-    json row = { { "phantom", i },
-                 { "surface", report.surfaceDistance },
-                 { "back", report.subjectDistance },
-                 { "tangled", report.untangling.before },
-                 { "volume", VolumeOf(subject) / EnclosedVolume(surface) } };
-    for (std::size_t k = 0; k < kinds.size(); ++k)
+    const Scan          scan(std::make_shared<const HemipelvisPhantom>(ParametersOf(factors, i)), voxel);
+    const MeshArrays    own = Build(scan);
+    const MeshArrays    carried = population.Bring(own, scan.ct);
+    const auto &        report = population.GetFilter()->GetReport();
+    std::vector<double> layerVolume;
+    const auto          brought = SurfacesOf(carried), there = SurfacesOf(own);
+    for (std::size_t k = 0; k < std::min(brought.inner.size(), there.inner.size()); ++k)
     {
-      FitPhantom(phantom, kinds[k].second, subject);
-      row[kinds[k].first] = MassOf(subject);
-      auto brought = DensityMesh<double>::New();
-      brought->SetArrays(subject);
-      sets[k]->AddSubject("phantom " + std::to_string(i), brought);
+      layerVolume.push_back(EnclosedVolume(brought.inner[k]) / EnclosedVolume(there.inner[k]));
     }
-    std::cout << row << std::endl;
+    std::cout << json{ { "phantom", i },
+                       { "cells", own.tetrahedra.size() },
+                       { "surface", report.surfaceDistance },
+                       { "back", report.subjectDistance },
+                       { "tangled", report.untangling.before },
+                       { "layers", report.layerDistance },
+                       { "layerVolume", layerVolume },
+                       { "ownVolume", VolumeOf(own) / scan.volume },
+                       { "volume", VolumeOf(carried) / scan.volume },
+                       { "mass", MassOf(carried) / scan.mass } }
+              << std::endl;
+    auto subject = DensityMesh<double>::New();
+    subject->SetArrays(carried);
+    set->AddSubject("phantom " + std::to_string(i), subject);
   }
-  for (std::size_t k = 0; k < kinds.size(); ++k)
+  const double mass = Scan(std::make_shared<const HemipelvisPhantom>(), voxel).mass;
+  for (const bool weighted : { false, true })
   {
-    PrintFactors(kinds[k].first, sets[k], factors);
+    PrintFactors(weighted, set, factors, mass);
   }
 }
 
@@ -552,9 +456,9 @@ main(int argc, char ** argv)
       parameters.method = DeformationMethod::NonRigidICP;
       Registration({ arguments.begin() + 1, arguments.end() }, parameters, false);
     }
-    else if (argc == 4 && arguments[0] == "population")
+    else if (argc == 5 && arguments[0] == "population")
     {
-      Population(arguments[1], std::stol(arguments[2]));
+      Population(arguments[1], std::stol(arguments[2]), std::stod(arguments[3]));
     }
     else if (argc == 4 && arguments[0] == "memory")
     {
