@@ -174,12 +174,10 @@ PopulationRegistration::PopulationRegistration(DensityMesh<double>::Pointer stan
 MeshArrays
 FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh)
 {
-  // In voxels. Standard deviation of what the interpolation blurs: a step blurred by s, taken s deep, keeps its
-  // integral to second order. And how far a layer's density reaches into the next, by the scanner's blur and
-  // registration.
-  constexpr double blur = 0.2, reach = 0.8;
+  // Standard deviation of what the interpolation blurs, in voxels. A step blurred by s, taken s deep, keeps its
+  // integral to second order.
+  constexpr double blur = 0.2;
   const auto       spacing = ct->GetSpacing();
-  const double     voxel = std::cbrt(spacing[0] * spacing[1] * spacing[2]);
   auto             placed = DensityMesh<double>::New();
   placed->SetArrays(mesh);
   auto fit = DensityFitFilter<CTImage>::New();
@@ -187,21 +185,9 @@ FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh)
   fit->SetMesh(placed);
   fit->SetDegree(degree);
   fit->SetInterpolator(DensityInterpolator::CubicBSpline);
-  fit->SetSurfaceMargin(blur * voxel);
+  fit->SetSurfaceMargin(blur * std::cbrt(spacing[0] * spacing[1] * spacing[2]));
   fit->Update();
-  const MeshArrays whole = fit->GetOutput()->GetArrays();
-  fit->SetInterfaceMargin(reach * voxel);
-  fit->Update();
-  MeshArrays result = fit->GetOutput()->GetArrays();
-  const auto count = static_cast<Eigen::Index>(BernsteinCount(degree));
-  for (std::size_t t = 0; t < result.tetrahedra.size(); ++t)
-  {
-    const auto                              first = t * static_cast<std::size_t>(count);
-    const Eigen::Map<const Eigen::VectorXd> kept(&whole.coefficients[first], count);
-    Eigen::Map<Eigen::VectorXd>             varies(&result.coefficients[first], count);
-    varies.array() += kept.mean() - varies.mean(); // a polynomial's mean is that of its coefficients
-  }
-  return result;
+  return fit->GetOutput()->GetArrays();
 }
 
 MeshArrays

@@ -35,12 +35,8 @@ ReadSubjectList(const std::string & path);
 void
 FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh);
 
-/** The mesh with its density fitted to a CT such that every cell keeps its mass and every layer its own density.
- *
- * Each cell's mean is that of a fit to the CT interpolated by cubic splines, with a surface margin of a fifth of a voxel,
- * which is how much these still blur the bone's surface. How the density varies in a cell comes from a fit with an
- * interface margin of 0.8 voxels as well: what the scanner's blur and the registration mix at the faces between layers
- * would be taken for the subject's. */
+/** The mesh with its density fitted to a CT such that the bone keeps its mass: interpolated by cubic splines, with a
+ * surface margin of a fifth of a voxel, which is how much these still blur the bone's surface. */
 MeshArrays
 FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh);
 
