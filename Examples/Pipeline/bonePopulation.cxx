@@ -9,7 +9,6 @@
 #include "boneTetraLocator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -174,18 +173,13 @@ PopulationRegistration::PopulationRegistration(DensityMesh<double>::Pointer stan
 MeshArrays
 FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh)
 {
-  // Standard deviation of what the interpolation blurs, in voxels. A step blurred by s, taken s deep, keeps its
-  // integral to second order.
-  constexpr double blur = 0.2;
-  const auto       spacing = ct->GetSpacing();
-  auto             placed = DensityMesh<double>::New();
+  auto placed = DensityMesh<double>::New();
   placed->SetArrays(mesh);
   auto fit = DensityFitFilter<CTImage>::New();
   fit->SetImage(ct);
   fit->SetMesh(placed);
   fit->SetDegree(degree);
   fit->SetInterpolator(DensityInterpolator::CubicBSpline);
-  fit->SetSurfaceMargin(blur * std::cbrt(spacing[0] * spacing[1] * spacing[2]));
   fit->Update();
   return fit->GetOutput()->GetArrays();
 }

@@ -35,8 +35,8 @@ ReadSubjectList(const std::string & path);
 void
 FitDensityOfModel(const MeshArrays & model, int degree, MeshArrays & mesh);
 
-/** The mesh with its density fitted to a CT such that the bone keeps its mass: interpolated by cubic splines, with a
- * surface margin of a fifth of a voxel, which is how much these still blur the bone's surface. */
+/** The mesh with its density fitted to a CT, interpolated by cubic splines: linear interpolation blurs a thin cortex
+ * and takes mass out of the bone. */
 MeshArrays
 FitDensityOfImage(const CTImage * ct, int degree, const MeshArrays & mesh);
 

@@ -126,9 +126,9 @@ def population_section(scratch):
         out += ["\n## A population of known factors\n",
                 f"{len(subjects)} phantom hemipelves, three factors of shape and two of density, orthogonal over the subjects. Each is",
                 "scanned (1 mm, with the scanner's blur), goes through the whole chain to a layered mesh of its own slices and",
-                "cells, to which the standard model (another phantom's, of other cells) is registered by layers; density of degree 2",
-                "from the scan. Share of each factor's variance that the first three modes of shape, or two of density, explain, with",
-                "the inner product of densities by coefficients (the default, as in the paper) and by volume (`--volume-weighted`):\n",
+                "cells, to which the standard model (another phantom's, of other cells) is registered by layers; density from the",
+                "scan. Share of each factor's variance that the first three modes of shape, or two of density, explain, with",
+                "the inner product of densities by coefficients (the default, as in the paper) or by volume (`--volume-weighted`):\n",
                 "| factor | " + " | ".join(trained) + " |", "|---" * (1 + len(trained)) + "|"]
         out += ["| " + " | ".join([name] + [explained[name, k] for k in trained]) + " |" for name in names]
         out.append("| largest correlation of these shape and density scores | "

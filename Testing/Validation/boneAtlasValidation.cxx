@@ -22,6 +22,7 @@
 #include <Eigen/QR>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <ctime>
 #include <fstream>
 #include <iostream>
@@ -264,7 +265,7 @@ ParametersOf(const Eigen::MatrixXd & factors, Eigen::Index i)
 
 /** Trains on the subjects and prints what the first modes explain of the factors. */
 void
-PrintFactors(bool weighted, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors, double mass)
+PrintFactors(bool weighted, int degree, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors, double mass)
 {
   auto estimator = StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
@@ -276,7 +277,7 @@ PrintFactors(bool weighted, const MeshTrainingSet<> * set, const Eigen::MatrixXd
   const char *          names[5] = {
              "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density"
   };
-  const char * product = weighted ? "volume" : "coefficients";
+  const std::string product = std::string(weighted ? "volume" : "coefficients") + ", degree " + std::to_string(degree);
   for (Eigen::Index f = 0; f < 5; ++f)
   {
     std::cout << json{ { "product", product },
@@ -307,9 +308,10 @@ Population(const std::string & standard, Eigen::Index subjects, double voxel)
 {
   auto mesh = DensityMesh<double>::New();
   mesh->SetArrays(ReadMeshArrays(standard));
-  PopulationRegistration population(mesh, /* degree */ 2);
-  const Eigen::MatrixXd  factors = Factors(subjects);
-  auto                   set = MeshTrainingSet<>::New();
+  constexpr int                                   Degrees[] = { 2, 0 };
+  PopulationRegistration                          population(mesh, Degrees[0]);
+  const Eigen::MatrixXd                           factors = Factors(subjects);
+  const std::array<MeshTrainingSet<>::Pointer, 2> sets = { { MeshTrainingSet<>::New(), MeshTrainingSet<>::New() } };
   for (Eigen::Index i = 0; i < subjects; ++i)
   {
     const Scan          scan(std::make_shared<const HemipelvisPhantom>(ParametersOf(factors, i)), voxel);
@@ -333,14 +335,18 @@ Population(const std::string & standard, Eigen::Index subjects, double voxel)
                        { "volume", VolumeOf(carried) / scan.volume },
                        { "mass", MassOf(carried) / scan.mass } }
               << std::endl;
-    auto subject = DensityMesh<double>::New();
-    subject->SetArrays(carried);
-    set->AddSubject("phantom " + std::to_string(i), subject);
+    for (std::size_t d = 0; d < sets.size(); ++d)
+    {
+      auto subject = DensityMesh<double>::New();
+      subject->SetArrays(d == 0 ? carried : FitDensityOfImage(scan.ct, Degrees[d], carried));
+      sets[d]->AddSubject("phantom " + std::to_string(i), subject);
+    }
   }
   const double mass = Scan(std::make_shared<const HemipelvisPhantom>(), voxel).mass;
-  for (const bool weighted : { false, true })
+  PrintFactors(false, Degrees[0], sets[0], factors, mass);
+  for (std::size_t d = 0; d < sets.size(); ++d)
   {
-    PrintFactors(weighted, set, factors, mass);
+    PrintFactors(true, Degrees[d], sets[d], factors, mass);
   }
 }
 
