@@ -13,9 +13,9 @@ namespace bone
 /** \class MeshRepair
  * \brief Flips of surface edges and collapses of edges at the worst cells, where these get better by it.
  *
- * Every operation raises the smallest dihedral angle of the cells it touches. Boundary and interfaces stay within the
- * mover's bound, and the boundary does not pass through itself; the topology of body, regions, surfaces and curves is
- * kept. */
+ * Every operation but those of CollapseShort raises the smallest dihedral angle of the cells it touches. Boundary and
+ * interfaces stay within the mover's bound, and the boundary does not pass through itself; the topology of body,
+ * regions, surfaces and curves is kept. */
 class MeshRepair
 {
 public:
@@ -26,6 +26,12 @@ public:
    * called with the cells that came or changed. Returns the number of operations. */
   std::size_t
   Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed);
+
+  /** Collapses edges shorter than `length` (mm) whatever cells that leaves, as long as they are positive, the shortest
+   * first, until no more can be: knots of nearly coincident points, where no single collapse raises the smallest angle.
+   * Returns the number of collapses. */
+  std::size_t
+  CollapseShort(double length);
 
   /** The collapse v -> w where it is legal and its new cells are better than `cosine`; the cells that changed. */
   bool
@@ -42,6 +48,8 @@ private:
   CollapseAt(IdType t, std::vector<IdType> & changed);
   bool
   CollapseKeepsSurfaces(IdType v, IdType w);
+  bool
+  CollapseShortEdge(IdType v, IdType w);
 
   TetraComplex & m_Complex;
   PointMover &   m_Mover;

@@ -16,6 +16,8 @@ namespace
 /** Edges longer than this many sizes are halved, those shorter than the other collapsed. */
 constexpr double LongEdge = 1.5;
 constexpr double ShortEdge = 0.6;
+/** Of the distance bound: shorter edges are accidents of the input. */
+constexpr double TinyEdge = 1e-3;
 constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
 
@@ -39,6 +41,7 @@ public:
   Run()
   {
     const double steps = m_Parameters.rounds + 1.0;
+    m_Report.repairs += m_Repair.CollapseShort(TinyEdge * m_Parameters.distanceBound);
     Smooth(m_Parameters.iterations, SurfaceMotion::ToFairedPlace);
     Advance(1.0 / steps);
     for (int round = 0; round < m_Parameters.rounds; ++round)

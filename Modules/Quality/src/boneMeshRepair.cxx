@@ -7,6 +7,7 @@
 #include "boneQualityMeasures.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace bone
 {
@@ -165,6 +166,73 @@ MeshRepair::TryCollapse(IdType v, IdType w, double cosine, std::vector<IdType> &
   }
   changed = m_Complex.Collapse(v, w);
   return true;
+}
+
+std::size_t
+MeshRepair::CollapseShort(double length)
+{
+  struct Edge
+  {
+    double length;
+    IdType a;
+    IdType b;
+
+    bool
+    operator<(const Edge & other) const
+    {
+      return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
+    }
+  };
+  const auto & points = m_Complex.Points();
+  std::size_t  count = 0;
+  for (std::size_t before = count + 1; before != count;)
+  {
+    before = count;
+    std::vector<Edge> edges;
+    for (IdType a = 0; a < static_cast<IdType>(points.size()); ++a)
+    {
+      for (IdType b : m_Complex.Star(a).empty() ? std::vector<IdType>() : m_Complex.PointNeighbors(a))
+      {
+        const double along = (points[a] - points[b]).norm();
+        if (a < b && along < length)
+        {
+          edges.push_back({ along, a, b });
+        }
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    for (const Edge & edge : edges)
+    {
+      if (!m_Complex.Star(edge.a).empty() && !m_Complex.Star(edge.b).empty() && CollapseShortEdge(edge.a, edge.b))
+      {
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+/** The way that leaves the better cells first. */
+bool
+MeshRepair::CollapseShortEdge(IdType v, IdType w)
+{
+  constexpr double    AnyPositive = 2.0;
+  std::vector<IdType> changed;
+  if (WorstAfterCollapse(w, v) < WorstAfterCollapse(v, w))
+  {
+    std::swap(v, w);
+  }
+  for (int way = 0; way < 2; ++way)
+  {
+    const bool allowed =
+      m_Complex.Dimension(v) > 0 && (m_Complex.Dimension(v) == 3 || m_Complex.Dimension(w) <= m_Complex.Dimension(v));
+    if (allowed && TryCollapse(v, w, AnyPositive, changed))
+    {
+      return true;
+    }
+    std::swap(v, w);
+  }
+  return false;
 }
 
 bool

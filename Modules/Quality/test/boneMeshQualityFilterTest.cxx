@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 using namespace bone;
 
@@ -80,6 +81,64 @@ CirclesOfBall(const Vector3 & centre, double radius)
   return slices;
 }
 
+/** Puts a point on edge a -> b, next to a. */
+void
+SplitNextTo(IdType a, IdType b, double distance, MeshArrays & mesh)
+{
+  const IdType  m = static_cast<IdType>(mesh.points.size());
+  const Vector3 way = (mesh.points[b] - mesh.points[a]).normalized();
+  mesh.points.push_back(mesh.points[a] + distance * way);
+  mesh.layer.push_back(std::min(mesh.layer[a], mesh.layer[b]));
+  if (!mesh.slice.empty())
+  {
+    mesh.slice.push_back(mesh.slice[a]);
+  }
+  const std::size_t count = mesh.tetrahedra.size();
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    Id4 &      c = mesh.tetrahedra[t];
+    const auto i = std::find(c.begin(), c.end(), a), j = std::find(c.begin(), c.end(), b);
+    if (i != c.end() && j != c.end())
+    {
+      Id4 far = c;
+      *j = m;
+      far[static_cast<std::size_t>(i - c.begin())] = m;
+      mesh.tetrahedra.push_back(far);
+      mesh.region.push_back(mesh.region[t]);
+    }
+  }
+}
+
+/** Both ends of some surface edges get others nearly on top of them, towards all their neighbors. */
+MeshArrays
+WithKnots(MeshArrays mesh)
+{
+  const auto faces = BoundaryFaces(mesh);
+  for (std::size_t f = 0; f < faces.size(); f += faces.size() / 5)
+  {
+    for (const IdType end : { faces[f][0], faces[f][1] })
+    {
+      std::set<IdType> neighbors;
+      for (const Id4 & c : mesh.tetrahedra)
+      {
+        if (std::find(c.begin(), c.end(), end) != c.end())
+        {
+          neighbors.insert(c.begin(), c.end());
+        }
+      }
+      neighbors.erase(end);
+      double distance = 1e-5;
+      for (const IdType other : neighbors)
+      {
+        SplitNextTo(end, other, distance, mesh);
+        distance *= 1.3;
+      }
+    }
+  }
+  mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  return mesh;
+}
+
 double
 SmallestAngle(const MeshArrays & mesh)
 {
@@ -105,6 +164,23 @@ TEST(MeshQualityFilter, KeepsMeshesValidAndRaisesTheirQuality)
     EXPECT_EQ(made.slice.size(), mesh.slice.empty() ? 0u : made.points.size());
     EXPECT_GT(filter->GetReport().flips, 0u);
     EXPECT_FALSE(made.HasDensity());
+  }
+}
+
+TEST(MeshQualityFilter, KnotsOfNearlyCoincidentPointsAreUndone)
+{
+  for (unsigned seed = 1; seed <= 6; ++seed)
+  {
+    const auto mesh = WithKnots(Body(seed));
+    ASSERT_TRUE(ValidateMesh(mesh).IsValid()) << "seed " << seed;
+    ASSERT_LT(SmallestAngle(mesh), 1e-3);
+    auto filter = MeshQualityFilter<MeshType>::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetRounds(2);
+    filter->Update();
+    const auto made = filter->GetOutput()->GetArrays();
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << "seed " << seed;
+    EXPECT_GT(SmallestAngle(made), 10.0 / 57.3) << "seed " << seed;
   }
 }
 
