@@ -25,7 +25,7 @@ struct CollapseParameters
   double densityWeight{ 3.0 };  ///< of the squared density error, as a share of the density's range, integrated
   double surfaceWeight{ 1.0 };  ///< 1/mm, of the squared distance of boundary and interfaces, integrated
   double volumeWeight{ 200.0 }; ///< of the growth of each region's squared volume error over its volume
-  double shapeWeight{ 0.05 };   ///< of the cells' volume, where their smallest dihedral angle is small
+  double shapeWeight{ 0.01 };   ///< of the cells' volume, where their smallest dihedral angle is small
   double minimumAngle{ 0.05235987755982988 }; ///< rad; no dihedral angle falls below this and below what it was
   double minimumCorticalAngle{ 0.02617993877991494 }; ///< rad, the same in the outermost layer, which may be thin
   double maximumVolumeChange{ std::numeric_limits<double>::infinity() }; ///< of each region, as a share
