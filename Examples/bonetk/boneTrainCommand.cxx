@@ -27,6 +27,7 @@ struct Options
   bool        similarity{ false };
   bool        combined{ false };
   bool        volumeWeighted{ false };
+  double      withinCellWeight{ 0.25 };
   double      variance{ 0.98 };
   int         modes{ 0 };
   bool        rejectOutliers{ false };
@@ -118,6 +119,7 @@ Run(const Options & options, Session & session)
   estimator->SetAlignment(options.similarity ? AlignmentKind::Similarity : AlignmentKind::Rigid);
   estimator->SetCombined(options.combined);
   estimator->SetVolumeWeighted(options.volumeWeighted);
+  estimator->SetWithinCellWeight(options.withinCellWeight);
   estimator->SetVarianceProportion(options.variance);
   estimator->SetMaximumModes(options.modes);
   estimator->SetRejectOutliers(options.rejectOutliers);
@@ -161,7 +163,15 @@ AddTrainCommand(CLI::App & app, Action & action)
     ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
   command->add_flag("--similarity", options->similarity, "Take size out of the shapes");
   command->add_flag("--combined", options->combined, "Combined modes of shape and density too");
-  command->add_flag("--volume-weighted", options->volumeWeighted, "Modes of density by integrals over the volume in place of coefficients");
+  command->add_flag("--volume-weighted",
+                    options->volumeWeighted,
+                    "Modes of density by integrals over the volume in place of coefficients");
+  command
+    ->add_option("--within-cell-weight",
+                 options->withinCellWeight,
+                 "With --volume-weighted: how much the variation within a tetrahedron counts against its mean; default "
+                 "0.25, 1 is the integral itself")
+    ->check(Between(1e-6, 1));
   command->add_option("--variance", options->variance, "Share of the variance that the modes explain; default 0.98")
     ->check(Between(0.01, 1));
   command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")

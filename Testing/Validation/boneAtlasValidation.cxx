@@ -263,21 +263,27 @@ ParametersOf(const Eigen::MatrixXd & factors, Eigen::Index i)
   return p;
 }
 
-/** Trains on the subjects and prints what the first modes explain of the factors. */
+/** Trains on the subjects, by volume with a weight of variation within cells or (0) by coefficients, and prints what
+ * the first modes explain of the factors. */
 void
-PrintFactors(bool weighted, int degree, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors, double mass)
+PrintFactors(double within, int degree, const MeshTrainingSet<> * set, const Eigen::MatrixXd & factors, double mass)
 {
   auto estimator = StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
   estimator->SetVarianceProportion(1.0); // all modes: the third of shape is beyond 98 % of the variance
-  estimator->SetVolumeWeighted(weighted);
+  estimator->SetVolumeWeighted(within > 0);
+  if (within > 0)
+  {
+    estimator->SetWithinCellWeight(within);
+  }
   estimator->Update();
   const auto &          content = estimator->GetOutput()->GetContent();
   const Eigen::MatrixXd shape = content.shapeScores.leftCols(3), density = content.densityScores.leftCols(2);
   const char *          names[5] = {
              "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density"
   };
-  const std::string product = std::string(weighted ? "volume" : "coefficients") + ", degree " + std::to_string(degree);
+  const std::string kind = within == 1 ? "integral" : within > 0 ? "volume" : "coefficients";
+  const std::string product = kind + ", degree " + std::to_string(degree);
   for (Eigen::Index f = 0; f < 5; ++f)
   {
     std::cout << json{ { "product", product },
@@ -343,10 +349,11 @@ Population(const std::string & standard, Eigen::Index subjects, double voxel)
     }
   }
   const double mass = Scan(std::make_shared<const HemipelvisPhantom>(), voxel).mass;
-  PrintFactors(false, Degrees[0], sets[0], factors, mass);
+  PrintFactors(0, Degrees[0], sets[0], factors, mass);
+  PrintFactors(1, Degrees[0], sets[0], factors, mass);
   for (std::size_t d = 0; d < sets.size(); ++d)
   {
-    PrintFactors(true, Degrees[d], sets[d], factors, mass);
+    PrintFactors(StatisticalModelEstimator<>::New()->GetWithinCellWeight(), Degrees[d], sets[d], factors, mass);
   }
 }
 

@@ -19,6 +19,7 @@ struct TrainingParameters
   int           maximumModes{ 0 };
   bool          combined{ false };
   bool          volumeWeighted{ false };
+  double        withinCellWeight{ 0.25 };
   double        outlierThreshold{ 3.5 };
   bool          rejectOutliers{ false };
   std::size_t   blockBytes{ std::size_t(1) << 30 };

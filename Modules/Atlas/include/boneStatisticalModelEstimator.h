@@ -30,6 +30,9 @@ namespace bone
  * - VolumeWeighted: inner product of densities by their integral over the mean mesh, so that cells count by their
  * volume and modes are those of the density as a function, whatever its degree; default off: each coefficient counts
  * alike, as in the paper.
+ * - WithinCellWeight: with VolumeWeighted, how much the density's variation within a cell counts against its mean
+ * there; above 0, at most 1, which makes the product the integral itself; default 0.25, as most of it is the scanner's
+ * blur at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
  * - OutlierThreshold: modified z-score of a subject's distance to the mean, in shape or density, above which it is
  * called an outlier; default 3.5, 0: none are. RejectOutliers: train again without them; default off.
  * - BlockBytes: memory for densities held at once; default 1 GiB. Does not change results beyond rounding.
@@ -72,6 +75,8 @@ public:
   itkSetMacro(VolumeWeighted, bool);
   itkGetConstMacro(VolumeWeighted, bool);
   itkBooleanMacro(VolumeWeighted);
+  itkSetMacro(WithinCellWeight, double);
+  itkGetConstMacro(WithinCellWeight, double);
   itkSetMacro(OutlierThreshold, double);
   itkGetConstMacro(OutlierThreshold, double);
   itkSetMacro(RejectOutliers, bool);
@@ -110,6 +115,7 @@ private:
   int                           m_MaximumModes{ 0 };
   bool                          m_Combined{ false };
   bool                          m_VolumeWeighted{ false };
+  double                        m_WithinCellWeight{ 0.25 };
   double                        m_OutlierThreshold{ 3.5 };
   bool                          m_RejectOutliers{ false };
   std::size_t                   m_BlockBytes{ std::size_t(1) << 30 };

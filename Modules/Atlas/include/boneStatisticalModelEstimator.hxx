@@ -64,6 +64,10 @@ StatisticalModelEstimator<TMesh>::VerifyPreconditions() ITKv5_CONST
   {
     itkExceptionMacro("VarianceProportion is " << m_VarianceProportion << "; it must be above 0 and at most 1.");
   }
+  if (!(m_WithinCellWeight > 0 && m_WithinCellWeight <= 1))
+  {
+    itkExceptionMacro("WithinCellWeight is " << m_WithinCellWeight << "; it must be above 0 and at most 1.");
+  }
   if (m_MaximumModes < 0)
   {
     itkExceptionMacro("MaximumModes is " << m_MaximumModes << "; it must not be negative.");
@@ -84,6 +88,7 @@ StatisticalModelEstimator<TMesh>::GenerateData()
   parameters.maximumModes = m_MaximumModes;
   parameters.combined = m_Combined;
   parameters.volumeWeighted = m_VolumeWeighted;
+  parameters.withinCellWeight = m_WithinCellWeight;
   parameters.outlierThreshold = m_OutlierThreshold;
   parameters.rejectOutliers = m_RejectOutliers;
   parameters.blockBytes = m_BlockBytes;
@@ -108,6 +113,7 @@ StatisticalModelEstimator<TMesh>::PrintSelf(std::ostream & os, itk::Indent inden
   os << indent << "MaximumModes: " << m_MaximumModes << std::endl;
   os << indent << "Combined: " << m_Combined << std::endl;
   os << indent << "VolumeWeighted: " << m_VolumeWeighted << std::endl;
+  os << indent << "WithinCellWeight: " << m_WithinCellWeight << std::endl;
   os << indent << "OutlierThreshold: " << m_OutlierThreshold << std::endl;
   os << indent << "RejectOutliers: " << m_RejectOutliers << std::endl;
   os << indent << "BlockBytes: " << m_BlockBytes << std::endl;

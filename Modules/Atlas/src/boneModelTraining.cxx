@@ -56,9 +56,10 @@ VerifySubject(const TrainingSet & set, std::size_t i, const MeshArrays & mesh, c
   }
 }
 
-/** Inner products of the Bernstein polynomials of a degree in a cell of volume 1. */
+/** Inner products of the Bernstein polynomials of a degree in a cell of volume 1: of their means, plus `within` times
+ * that of what they differ from them. The same for the same functions, whatever the degree. */
 Eigen::MatrixXd
-BernsteinGram(int degree)
+BernsteinGram(int degree, double within)
 {
   const int       count = BernsteinCount(degree);
   Eigen::MatrixXd gram(count, count);
@@ -70,7 +71,8 @@ BernsteinGram(int degree)
       gram(i, j) = BernsteinInnerProduct(degree, a.data(), degree, b.data(), 1.0);
     }
   }
-  return gram;
+  const double mean = 1.0 / count; // of each polynomial
+  return (within * gram.array() + (1.0 - within) * mean * mean).matrix();
 }
 
 /** Volume of the cell of every coefficient, of mean 1 over the cells. */
@@ -224,9 +226,10 @@ AnalyzeSubjects(const TrainingSet &              set,
   if (topology.HasDensity())
   {
     const Eigen::VectorXd weights = parameters.volumeWeighted ? VolumeWeights(content.mean) : Eigen::VectorXd();
-    const Eigen::MatrixXd block =
-      parameters.volumeWeighted ? BernsteinGram(content.mean.maximumDegree) : Eigen::MatrixXd();
-    const auto dimension = static_cast<Eigen::Index>(topology.coefficients.size());
+    const Eigen::MatrixXd block = parameters.volumeWeighted
+                                    ? BernsteinGram(content.mean.maximumDegree, parameters.withinCellWeight)
+                                    : Eigen::MatrixXd();
+    const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
     content.density =
       AnalyzeVectors(DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores);
     content.mean.coefficients.assign(content.density.mean.data(), content.density.mean.data() + dimension);

@@ -125,6 +125,43 @@ TEST(StatisticalModelEstimator, VolumeWeightedModesAreThoseOfTheDensityWhateverI
   EXPECT_LT((b.variances - a.variances).norm(), 1e-8 * b.variances.norm());
 }
 
+TEST(StatisticalModelEstimator, VariationWithinCellsCountsByItsWeight)
+{
+  const auto subjects = MakePopulation(8);
+  const auto variance = [&](double weight) {
+    const auto estimator = Estimate(subjects, [&](Estimator * e) {
+      e->VolumeWeightedOn();
+      e->SetWithinCellWeight(weight);
+    });
+    return estimator->GetOutput()->GetContent();
+  };
+  const auto model = variance(1.0);
+  // The variance of the cells' means, from the subjects.
+  const std::size_t cells = model.mean.tetrahedra.size();
+  const auto        count = static_cast<Eigen::Index>(subjects.front().coefficients.size() / cells);
+  Eigen::VectorXd   volume(cells);
+  Eigen::MatrixXd   means(cells, subjects.size());
+  for (std::size_t t = 0; t < cells; ++t)
+  {
+    const Id4 &  c = model.mean.tetrahedra[t];
+    const auto & p = model.mean.points;
+    volume[static_cast<Eigen::Index>(t)] = SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    for (std::size_t i = 0; i < subjects.size(); ++i)
+    {
+      means(t, i) =
+        Eigen::Map<const Eigen::VectorXd>(&subjects[i].coefficients[t * static_cast<std::size_t>(count)], count).mean();
+    }
+  }
+  means.colwise() -= means.rowwise().mean().eval();
+  const double between = (volume.asDiagonal() * means.cwiseAbs2()).sum() / volume.mean() / 7.0;
+  const double all = model.density.totalVariance;
+  EXPECT_GT(all, 1.005 * between);
+  for (const double weight : { 0.01, 0.25, 0.5 })
+  {
+    EXPECT_NEAR(variance(weight).density.totalVariance, between + weight * (all - between), 1e-10 * all);
+  }
+}
+
 TEST(StatisticalModelEstimator, FindsAsManyDensityModesAsThereArePatterns)
 {
   const auto estimator = Estimate(MakePopulation(9));
@@ -266,6 +303,8 @@ TEST(StatisticalModelEstimator, RefusesSetsThatAreNone)
   EXPECT_THROW(Estimate({ MakeSubject(1, -1), MakeSubject(2, -1) }, [](Estimator * e) { e->CombinedOn(); }),
                itk::ExceptionObject);
   EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetVarianceProportion(0); }), itk::ExceptionObject);
+  EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetWithinCellWeight(0); }), itk::ExceptionObject);
+  EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetWithinCellWeight(1.1); }), itk::ExceptionObject);
   EXPECT_THROW(Estimate(MakePopulation(3), [](Estimator * e) { e->SetAlignment(AlignmentKind::Affine); }),
                itk::ExceptionObject);
 }
