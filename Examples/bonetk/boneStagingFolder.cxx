@@ -140,4 +140,11 @@ InstallSignalHandling()
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread(WaitForSignals, signals).detach();
 }
+
+void
+FinishSignalHandling()
+{
+  // Never given back: who waits for it in WaitForSignals() stays there until the process has ended.
+  RegistryMutex().lock();
+}
 } // namespace bone

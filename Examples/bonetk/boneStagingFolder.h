@@ -42,6 +42,12 @@ private:
  * before the first thread starts. */
 void
 InstallSignalHandling();
+
+/** From here on SIGINT and SIGTERM change nothing: the outputs are in place or given up, and the process ends with the
+ * exit code that says so. Call it once, when no StagingFolder lives any more and nothing but the end of main() is
+ * left. */
+void
+FinishSignalHandling();
 } // namespace bone
 
 #endif

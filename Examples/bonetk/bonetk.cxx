@@ -127,5 +127,7 @@ main(int argc, char ** argv)
     itk::MultiThreaderBase::SetGlobalMaximumNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
     itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
   }
-  return Run(action, session);
+  exitCode = Run(action, session);
+  bone::FinishSignalHandling();
+  return exitCode;
 }

@@ -2,6 +2,7 @@
 """Outputs are whole or not there: interrupted runs, full disks, and the same bytes whatever the number of threads."""
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -49,23 +50,47 @@ class Outputs(TestCase):
             pass
         self.refuse("build", "ct.nii.gz", *BUILD, "-o", "file", says="file")
 
+    def snapshot(self, name):
+        """What is under that name: nothing (None), a folder's contents, or a file's bytes."""
+        if not os.path.exists(name):
+            return None
+        if os.path.isdir(name):
+            return self.contents(name)
+        with open(name, "rb") as file:
+            return file.read()
+
+    def remove(self, name):
+        if os.path.isdir(name):
+            shutil.rmtree(name)
+        elif os.path.exists(name):
+            os.remove(name)
+
     def interrupted(self, number, code, command):
-        """Ends a command after ever longer times; what is there afterwards is what was there before."""
+        """Ends a command after ever longer times: its output is whole or not there, and nothing else is left."""
+        output = command[command.index("-o") + 1]
         before = sorted(os.listdir())
+        self.succeed(*command)
+        whole = self.snapshot(output)
         for delay in (0.02, 0.1, 0.3, 0.6, 1.0, 1.5):
+            self.remove(output)
             process = subprocess.Popen([BONETK] + command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(delay)
             process.send_signal(number)
             got = process.wait(20)
+            # A signal that comes before the handler is set ends the process the plain way; one that comes when the
+            # output has just got its name finds it whole.
+            self.assertIn(got, (0, code, -number))
+            there = self.snapshot(output)
+            if got == 0 or there is not None:
+                self.assertEqual(there, whole)
+            self.remove(output)
+            self.assertEqual(sorted(os.listdir()), before)
             if got == 0:
                 break  # it was faster
-            # A signal that comes before the handler is set ends the process the plain way.
-            self.assertIn(got, (code, -number))
-            self.assertEqual(sorted(os.listdir()), before)
 
     def test_interrupted(self):
         self.interrupted(signal.SIGINT, 130, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
-        self.interrupted(signal.SIGTERM, 1, ["build", "ct.nii.gz", *BUILD, "-o", "out2"])
+        self.interrupted(signal.SIGTERM, 1, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
         self.interrupted(signal.SIGINT, 130, ["phantom", "--spacing", "1", "-o", "big.nii.gz"])
 
     def full_disk(self, limit, *arguments):
