@@ -180,15 +180,20 @@ floats), 18 a tetrahedron (four ids of 4, degree and region of 1) and 4 a coeffi
     return text
 
 
-def phantom(bonetk, work):
-    folder = pathlib.Path(os.environ.get("PHANTOM", work / "phantom"))
+def make_phantom(bonetk, folder, bone="femur", subject=0, *build):
+    """Model (level 1), noisy CT, labels and noise-free CT of a phantom, in a folder that may have them already."""
     ct, labels, clean = folder / "ct.nii.gz", folder / "labels.nii.gz", folder / "clean.nii.gz"
     if not clean.exists():
         folder.mkdir(exist_ok=True)
-        run(bonetk, "phantom", "--bone", "femur", "--noise", NOISE, "-o", ct, "--labels", labels, "-q")
-        run(bonetk, "build", ct, "--labels", labels, "-o", folder / "model", "-q")
-        run(bonetk, "phantom", "--bone", "femur", "-o", clean, "-q")
-    mesh = folder / "model" / "model_L1.vtu"
+        subject = ("--bone", bone, "--subject", subject)
+        run(bonetk, "phantom", *subject, "--noise", NOISE, "-o", ct, "--labels", labels, "-q")
+        run(bonetk, "build", ct, "--labels", labels, *build, "-o", folder / "model", "-q")
+        run(bonetk, "phantom", *subject, "-o", clean, "-q")
+    return folder / "model" / "model_L1.vtu", ct, labels, clean
+
+
+def phantom(bonetk, work):
+    mesh, ct, labels, clean = make_phantom(bonetk, pathlib.Path(os.environ.get("PHANTOM", work / "phantom")))
     default = fits(mesh, ct, labels, 0, f"truth={clean}")
     variants = {"samples alone": fits(mesh, ct, labels, 0, f"truth={clean}", "voxelweight=0", "limit=inf"),
                 "B-spline": fits(mesh, ct, labels, 0, f"truth={clean}", "interpolator=bspline"),
@@ -206,6 +211,7 @@ error against the known noise-free CT in HU; below the noise means below {NOISE:
                      *(f"{v[n]['all']['mean']:.1f}" for v in variants.values())))
     text += table(("degree", "all", "below the noise", "cortical", "spongy", "medullary", *variants), rows)
     text += f"\nLeast error: degree {best(default, lambda e: e['all']['mean'])}.\n"
+    text += other_phantoms(bonetk, work)
     data = work / "phantom.txt"
     data.write_text("\n".join(f"{n} {e['all']['mean']} {storage(e) / (2 * e['meshVoxels'])}" for n, e in enumerate(default)))
     script = f"""set terminal png size 900,360; set output '{OUT / 'density_phantom.png'}'; set multiplot layout 1,2
@@ -220,6 +226,22 @@ plot '{data}' using 3:2:1 with labels offset 1,0.5, '' using 3:2 with linespoint
     except (OSError, subprocess.CalledProcessError):
         pass
     return text
+
+
+def other_phantoms(bonetk, work):
+    """Subjects of the same phantom, and the one of thin cortices as built by default and finer."""
+    rows = []
+    for bone, subject, *build in (("femur", 1), ("femur", 2), ("femur", 3), ("hemipelvis", 0), ("hemipelvis", 1),
+                                  ("hemipelvis", 0, "--tetrahedra", 100000), ("hemipelvis", 1, "--tetrahedra", 100000)):
+        mesh, ct, labels, clean = make_phantom(bonetk, work / "_".join(map(str, [bone, subject, *build])), bone, subject, *build)
+        found = fits(mesh, ct, labels, 0, f"truth={clean}", "degrees=1,2,3,4,5,6,7,8")
+        errors = {e["degree"]: e["all"]["mean"] for e in found}
+        below = [n for n in errors if all(errors[m] < NOISE for m in errors if m >= n)]
+        rows.append((f"{bone}, subject {subject}", f"{found[0]['tetrahedra']:,}",
+                     f"{found[0]['meshVoxels'] / found[0]['tetrahedra']:.1f}", *(f"{errors[n]:.1f}" for n in (2, 3, 4, 6)),
+                     f"from degree {min(below)}" if below else "no", min(errors, key=errors.get)))
+    return "\nOther phantoms, mean absolute error (HU) by degree:\n\n" + table(
+        ("phantom", "tetrahedra", "voxels each", "2", "3", "4", "6", "below the noise", "least at degree"), rows)
 
 
 def speed():
