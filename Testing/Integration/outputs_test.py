@@ -71,12 +71,14 @@ class Outputs(TestCase):
         before = sorted(os.listdir())
         self.succeed(*command)
         whole = self.snapshot(output)
+        codes = []
         for delay in (0.02, 0.1, 0.3, 0.6, 1.0, 1.5):
             self.remove(output)
             process = subprocess.Popen([BONETK] + command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(delay)
             process.send_signal(number)
             got = process.wait(20)
+            codes.append(got)
             # A signal that comes before the handler is set ends the process the plain way; one that comes when the
             # output has just got its name finds it whole.
             self.assertIn(got, (0, code, -number))
@@ -87,6 +89,7 @@ class Outputs(TestCase):
             self.assertEqual(sorted(os.listdir()), before)
             if got == 0:
                 break  # it was faster
+        self.assertIn(code, codes, "no signal was heeded")
 
     def test_interrupted(self):
         self.interrupted(signal.SIGINT, 130, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
