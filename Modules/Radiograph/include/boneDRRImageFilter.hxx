@@ -37,22 +37,41 @@ DRRImageFilter<TMesh, TOutputImage>::GetVerifiedPoints() const
 }
 
 template <typename TMesh, typename TOutputImage>
+const ProjectionModel &
+DRRImageFilter<TMesh, TOutputImage>::GetModel(const ParallelFor & parallelFor)
+{
+  const TMesh *               mesh = this->GetInput();
+  const MeshRadiographOptions options = GetOptions();
+  if (m_Kept.model == nullptr || m_Kept.mesh != mesh || m_Kept.time != mesh->GetMTime() ||
+      m_Kept.model->Options() != options)
+  {
+    m_Kept.model.reset();
+    m_Kept.mesh = nullptr;
+    m_Kept.points = GetVerifiedPoints();
+    m_Kept.model = std::make_unique<const ProjectionModel>(m_Kept.points, mesh->GetCells(), options, parallelFor);
+    m_Kept.mesh = mesh;
+    m_Kept.time = mesh->GetMTime();
+  }
+  return *m_Kept.model;
+}
+
+template <typename TMesh, typename TOutputImage>
 void
 DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
                                                       const std::vector<float *> &            integrals)
 {
-  const TMesh *               mesh = this->GetInput();
-  const std::vector<Vector3>  points = GetVerifiedPoints();
-  const MeshRadiographOptions options = GetOptions();
-  const LoopRunner            loops = this->MakeLoops();
+  const LoopRunner loops = this->MakeLoops();
   m_MeanCellsPassed = 0.0;
   if (m_Method == DRRMethod::Projection)
   {
-    ProjectMesh(points, mesh->GetCells(), views, options, loops, integrals);
+    ProjectMesh(GetModel(loops.prepare), views, loops, integrals);
     return;
   }
-  double      sum = 0.0;
-  std::size_t hit = 0;
+  const TMesh *               mesh = this->GetInput();
+  const std::vector<Vector3>  points = GetVerifiedPoints();
+  const MeshRadiographOptions options = GetOptions();
+  double                      sum = 0.0;
+  std::size_t                 hit = 0;
   for (std::size_t i = 0; i < views.size(); ++i)
   {
     std::vector<std::int32_t> passed(static_cast<std::size_t>(views[i].size[0]) * views[i].size[1]);

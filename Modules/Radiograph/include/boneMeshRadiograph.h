@@ -24,6 +24,18 @@ struct MeshRadiographOptions
   double scale{ 1.0 };
   double offset{ 0.0 };
   bool   portable{ false }; ///< ProjectMesh: leave the processor's newer instructions alone
+
+  friend bool
+  operator==(const MeshRadiographOptions & a, const MeshRadiographOptions & b)
+  {
+    return a.minimumRegion == b.minimumRegion && a.maximumRegion == b.maximumRegion && a.scale == b.scale &&
+           a.offset == b.offset && a.portable == b.portable;
+  }
+  friend bool
+  operator!=(const MeshRadiographOptions & a, const MeshRadiographOptions & b)
+  {
+    return !(a == b);
+  }
 };
 
 /** Why a radiograph cannot be made of this mesh, its density converted as said (None or WaterScaled), and what to do;
@@ -47,12 +59,12 @@ FindObstacle(const std::vector<Vector3> &  points,
  * Transactions on Visualization and Computer Graphics 12(4), 2006).
  *
  * Per tetrahedron and view: the depths of its four face planes, affine in the pixel; the density as a polynomial in
- * pixel offset and depth about the cell's centre. Per column of pixels: that polynomial at the column. Per pixel: entry
- * at the smallest front, exit at the largest back depth, the polynomial's exact integral between them. Single
- * precision inside with depths relative to the cell, double for its geometry and for cells that are ill-conditioned
- * seen from the source; cells that reach behind the source, near it, or through the detector go through a general path.
- * Uses AVX2 or AVX-512 where the processor has it. `images` has one image for each of `views`; these share one loop, so
- * that small views keep all threads busy. Error about 1e-6 of the image's largest value. */
+ * pixel offset and depth about the cell's centre. Per pixel: entry at the smallest front, exit at the largest back
+ * depth, the polynomial's exact integral between them. Single precision inside with depths relative to the cell, double
+ * for its geometry and for cells that are ill-conditioned seen from the source; cells that reach behind the source,
+ * near it, or through the detector go through a general path. Uses AVX2 or AVX-512 where the processor has it. `images`
+ * has one image for each of `views`; these share one loop, so that small views keep all threads busy. Error about 1e-6
+ * of the image's largest value. For several calls with one mesh make a ProjectionModel. */
 void
 ProjectMesh(const std::vector<Vector3> &            points,
             const MeshArrays &                      cells,

@@ -2,9 +2,15 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneProjectedCells.h"
+#include "boneProjectionModel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <numeric>
 #include <sstream>
 
 namespace bone
@@ -58,48 +64,401 @@ FindObstacle(const std::vector<Vector3> &  points,
 
 namespace
 {
-/** As many that their rows stay in the cache and the threads share them well, so few that not many cells lie in two. */
+/** As many that their rows stay in the cache and the threads share them well. */
 int
 BandCount(const XRayGeometry::View & view)
 {
   return std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 });
 }
 
-void
-DrawBand(const ProjectedCells & cells, const projection::Kernels & kernels, std::size_t bandId, float * image)
+/** A range of pixels. */
+struct PixelRange
 {
-  const RayFrame &          rays = cells.Rays();
-  const int                 columns = rays.Columns();
-  const int                 firstRow = cells.FirstRow(bandId), endRow = cells.EndRow(bandId);
-  const int                 stride = columns + projection::lanes;
-  std::vector<float>        sums(static_cast<std::size_t>(stride) * (endRow - firstRow + projection::spareRows), 0.0f);
-  const projection::Band    band{ sums.data(), stride, firstRow, endRow, columns };
-  const std::vector<IdType> ids = cells.CellsOfBand(bandId);
-  cells.ForEachRun(
-    ids,
-    [&](const projection::CellRun & run) { kernels.add(run, band); },
-    [&](std::size_t t) {
-      cells.ForEachChord(
-        t, firstRow, endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric &) {
-          const double integral = cells.Density().Integrate(t, chord.entry, chord.exit, chord.length);
-          sums[static_cast<std::size_t>(row - firstRow) * stride + column] += static_cast<float>(integral);
+  int firstColumn{ std::numeric_limits<int>::max() };
+  int endColumn{ 0 };
+  int firstRow{ std::numeric_limits<int>::max() };
+  int endRow{ 0 };
+
+  bool
+  IsEmpty() const
+  {
+    return firstColumn >= endColumn || firstRow >= endRow;
+  }
+  void
+  Include(const PixelRange & other)
+  {
+    firstColumn = std::min(firstColumn, other.firstColumn);
+    endColumn = std::max(endColumn, other.endColumn);
+    firstRow = std::min(firstRow, other.firstRow);
+    endRow = std::max(endRow, other.endRow);
+  }
+};
+
+/** The radiograph of a model in one view: its blocks by bands of rows, in the order of their centres, each drawn whole
+ * into a picture of the rows its band's blocks cover; these overlap and are added up in order. */
+class ModelProjection
+{
+public:
+  ModelProjection(const ProjectionModel & model, const XRayGeometry::View & view)
+    : m_Model(model)
+    , m_Cells(model.Points(), model.Cells(), view, model.Options(), 1)
+    , m_Rays(m_Cells.Rays())
+    , m_Bands(BandCount(view))
+  {
+    Distribute();
+  }
+
+  /** Those of the bands, then those of the cells that take the general path. */
+  std::size_t
+  Tasks() const
+  {
+    return m_Bands.size() + (m_General.empty() ? 0 : m_Bands.size());
+  }
+  void
+  Draw(std::size_t task, const projection::Kernels & kernels);
+  /** Rows [firstRow, endRow) of the image, when all tasks are done. */
+  void
+  WriteRows(int firstRow, int endRow, float * image) const;
+
+private:
+  struct Band
+  {
+    PixelRange                             range;
+    std::vector<std::vector<std::int32_t>> blocks; ///< of each of the model's degrees
+    std::vector<float>                     sums;
+    std::ptrdiff_t                         stride{ 0 };
+  };
+  enum class Path
+  {
+    None,
+    Kernel,
+    General,
+  };
+
+  void
+  Distribute();
+  Path
+  FindRange(const Vector3 & centre, const Vector3 & halfSize, PixelRange & range, double & row) const;
+  std::vector<int>
+  ShareRows(const std::vector<std::size_t> & blocksOfRow) const;
+  void
+  DrawBand(Band & band, const projection::Kernels & kernels) const;
+  void
+  DrawGeneral(int firstRow, int endRow);
+  void
+  Add(const ProjectionModel::Blocks &   blocks,
+      const std::vector<std::int32_t> & chosen,
+      const projection::Kernels &       kernels,
+      const projection::Band &          target) const;
+  projection::BlockRun
+  MakeRun(const ProjectionModel::Blocks & blocks) const;
+
+  const ProjectionModel &   m_Model;
+  ProjectedCells            m_Cells;
+  const RayFrame &          m_Rays;
+  std::vector<Band>         m_Bands;
+  std::vector<std::int32_t> m_General; ///< cells
+  std::vector<float>        m_GeneralSums;
+};
+
+/** Where a box is seen; row: of its centre. */
+ModelProjection::Path
+ModelProjection::FindRange(const Vector3 & centre, const Vector3 & halfSize, PixelRange & range, double & row) const
+{
+  const Eigen::Matrix3d & toPixel = m_Rays.ToPixel();
+  const Vector3           q = toPixel * (centre - m_Rays.Origin(0, 0));
+  const bool              parallel = m_Rays.IsParallel();
+  const auto              reach = [&](const Vector3 & gradient) { return gradient.cwiseAbs().dot(halfSize); };
+  const Vector3           perS = toPixel.row(0);
+  const double            depth = reach(perS), nearest = q[0] - depth, farthest = q[0] + depth;
+  // s at the detector is 1 with a point source, 0 in a parallel beam.
+  const double detector = m_Rays.DetectorDepth();
+  if (nearest >= detector || (!parallel && farthest <= 0))
+  {
+    return Path::None;
+  }
+  if (farthest > detector || (!parallel && nearest < nearSource))
+  {
+    return Path::General;
+  }
+  const auto limit = [&](int axis, int count, int & first, int & end) {
+    const double  at = parallel ? q[axis] : q[axis] / q[0];
+    const Vector3 gradient = toPixel.row(axis);
+    const double  half = parallel ? reach(gradient) : reach(gradient - at * perS) / nearest;
+    const double  low = std::max(at - half, -1.0), high = std::min(at + half, static_cast<double>(count));
+    first = std::max(0, static_cast<int>(low));
+    end = high < 0 ? 0 : std::min(count, static_cast<int>(high) + 1);
+    return at;
+  };
+  limit(1, m_Rays.Columns(), range.firstColumn, range.endColumn);
+  row = limit(2, m_Rays.Rows(), range.firstRow, range.endRow);
+  return range.IsEmpty() ? Path::None : Path::Kernel;
+}
+
+/** Band of each row, so that bands take about as long. */
+std::vector<int>
+ModelProjection::ShareRows(const std::vector<std::size_t> & blocksOfRow) const
+{
+  std::size_t all = 0;
+  for (std::size_t count : blocksOfRow)
+  {
+    all += count;
+  }
+  // Rows take time, too.
+  const double     perRow = 1e-3 + static_cast<double>(all) / (8.0 * blocksOfRow.size());
+  const double     share = (static_cast<double>(all) + perRow * blocksOfRow.size()) / m_Bands.size();
+  std::vector<int> bandOfRow(blocksOfRow.size());
+  double           before = 0;
+  for (std::size_t row = 0; row < blocksOfRow.size(); ++row)
+  {
+    bandOfRow[row] = std::min(static_cast<int>(before / share), static_cast<int>(m_Bands.size()) - 1);
+    before += static_cast<double>(blocksOfRow[row]) + perRow;
+  }
+  return bandOfRow;
+}
+
+void
+ModelProjection::Distribute()
+{
+  struct Place
+  {
+    std::int32_t set, block;
+    int          row;
+    PixelRange   range;
+  };
+  std::vector<Place>       places;
+  std::vector<std::size_t> blocksOfRow(m_Rays.Rows(), 0);
+  const auto &             sets = m_Model.ByDegree();
+  for (std::size_t set = 0; set < sets.size(); ++set)
+  {
+    const ProjectionModel::Blocks & blocks = sets[set];
+    for (std::size_t b = 0; b < blocks.Count(); ++b)
+    {
+      Place      place{ static_cast<std::int32_t>(set), static_cast<std::int32_t>(b), 0, {} };
+      double     row = 0;
+      const Path path = FindRange(blocks.centres[b], blocks.halfSizes[b], place.range, row);
+      if (path == Path::Kernel)
+      {
+        place.row = static_cast<int>(std::clamp(row, 0.0, m_Rays.Rows() - 1.0));
+        ++blocksOfRow[place.row];
+        places.push_back(place);
+      }
+      else if (path == Path::General)
+      {
+        const auto first = blocks.cells.begin() + static_cast<std::ptrdiff_t>(b * ProjectionModel::Blocks::size);
+        std::copy_if(first, first + ProjectionModel::Blocks::size, std::back_inserter(m_General), [](std::int32_t t) {
+          return t >= 0;
         });
-    });
-  const auto [firstColumn, endColumn] = cells.ColumnsOf(ids);
+      }
+    }
+  }
+  for (Band & band : m_Bands)
+  {
+    band.blocks.resize(sets.size());
+  }
+  const std::vector<int> bandOfRow = ShareRows(blocksOfRow);
+  for (const Place & place : places)
+  {
+    Band & band = m_Bands[bandOfRow[place.row]];
+    band.range.Include(place.range);
+    band.blocks[place.set].push_back(place.block);
+  }
+  if (!m_General.empty())
+  {
+    m_GeneralSums.assign(static_cast<std::size_t>(m_Rays.Rows()) * m_Rays.Columns(), 0.0f);
+  }
+}
+
+projection::BlockRun
+ModelProjection::MakeRun(const ProjectionModel::Blocks & blocks) const
+{
+  const CellDensity &  density = m_Cells.Density();
+  const Vector3        origin = m_Rays.Origin(0, 0);
+  projection::BlockRun run{ nullptr,
+                            0,
+                            blocks.vertices.data(),
+                            blocks.coefficients.data(),
+                            blocks.cells.data(),
+                            density.Coefficients(0),
+                            density.Stride(),
+                            blocks.degree,
+                            m_Model.Options().scale,
+                            m_Model.Options().offset,
+                            { origin[0], origin[1], origin[2] },
+                            {},
+                            m_Rays.IsParallel() };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      run.toPixel[i][k] = m_Rays.ToPixel()(i, k);
+    }
+  }
+  return run;
+}
+
+void
+ModelProjection::Add(const ProjectionModel::Blocks &   blocks,
+                     const std::vector<std::int32_t> & chosen,
+                     const projection::Kernels &       kernels,
+                     const projection::Band &          target) const
+{
+  projection::BlockRun run = MakeRun(blocks);
+  if (blocks.IsKept())
+  {
+    run.blocks = chosen.data();
+    run.count = chosen.size();
+    kernels.add(run, target);
+    return;
+  }
+  constexpr std::size_t     atOnce = 16, size = ProjectionModel::Blocks::size;
+  const std::size_t         perBlock = blocks.CoefficientsSize();
+  std::vector<std::int32_t> ids(atOnce), cells(atOnce * size);
+  std::vector<double>       vertices(atOnce * ProjectionModel::Blocks::verticesSize);
+  std::vector<float>        coefficients(atOnce * perBlock);
+  std::iota(ids.begin(), ids.end(), 0);
+  run.blocks = ids.data();
+  run.cells = cells.data();
+  run.vertices = vertices.data();
+  run.coefficients = coefficients.data();
+  for (std::size_t first = 0; first < chosen.size(); first += atOnce)
+  {
+    run.count = std::min(atOnce, chosen.size() - first);
+    for (std::size_t i = 0; i < run.count; ++i)
+    {
+      const auto block = static_cast<std::size_t>(chosen[first + i]);
+      std::copy_n(&blocks.cells[block * size], size, &cells[i * size]);
+      m_Model.Fill(blocks, block, &vertices[i * ProjectionModel::Blocks::verticesSize], &coefficients[i * perBlock]);
+    }
+    kernels.add(run, target);
+  }
+}
+
+void
+ModelProjection::DrawBand(Band & band, const projection::Kernels & kernels) const
+{
+  const PixelRange & range = band.range;
+  if (range.IsEmpty())
+  {
+    return;
+  }
+  band.stride = range.endColumn - range.firstColumn + projection::spareColumns;
+  band.sums.assign(band.stride * (range.endRow - range.firstRow + projection::spareRows), 0.0f);
+  const projection::Band target{ band.sums.data(), band.stride,     range.firstRow,
+                                 range.endRow,     range.endColumn, range.firstColumn };
+  for (std::size_t set = 0; set < band.blocks.size(); ++set)
+  {
+    if (!band.blocks[set].empty())
+    {
+      Add(m_Model.ByDegree()[set], band.blocks[set], kernels, target);
+    }
+  }
+}
+
+void
+ModelProjection::DrawGeneral(int firstRow, int endRow)
+{
+  for (std::int32_t t : m_General)
+  {
+    m_Cells.ForEachChord(
+      t, firstRow, endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric &) {
+        const double integral = m_Cells.Density().Integrate(t, chord.entry, chord.exit, chord.length);
+        m_GeneralSums[static_cast<std::size_t>(row) * m_Rays.Columns() + column] += static_cast<float>(integral);
+      });
+  }
+}
+
+void
+ModelProjection::Draw(std::size_t task, const projection::Kernels & kernels)
+{
+  const std::size_t bands = m_Bands.size();
+  if (task < bands)
+  {
+    DrawBand(m_Bands[task], kernels);
+    return;
+  }
+  const auto rows = static_cast<std::size_t>(m_Rays.Rows());
+  DrawGeneral(static_cast<int>((task - bands) * rows / bands), static_cast<int>((task - bands + 1) * rows / bands));
+}
+
+void
+ModelProjection::WriteRows(int firstRow, int endRow, float * image) const
+{
+  const int          columns = m_Rays.Columns();
+  std::vector<float> lengths(columns);
   for (int row = firstRow; row < endRow; ++row)
   {
-    const float * from = sums.data() + static_cast<std::size_t>(row - firstRow) * stride;
-    float *       to = image + static_cast<std::size_t>(row) * columns;
-    std::fill_n(to, firstColumn, 0.0f);
-    rays.StepLengths(row, firstColumn, endColumn, to + firstColumn);
-    for (int column = firstColumn; column < endColumn; ++column)
+    float * const to = image + static_cast<std::size_t>(row) * columns;
+    int           low = columns, high = 0;
+    std::fill_n(to, columns, 0.0f);
+    for (const Band & band : m_Bands)
     {
-      to[column] *= from[column];
+      const PixelRange & range = band.range;
+      if (range.IsEmpty() || row < range.firstRow || row >= range.endRow)
+      {
+        continue;
+      }
+      const float * const from = band.sums.data() + (row - range.firstRow) * band.stride;
+      const int           count = range.endColumn - range.firstColumn;
+      for (int i = 0; i < count; ++i)
+      {
+        to[range.firstColumn + i] += from[i];
+      }
+      low = std::min(low, range.firstColumn);
+      high = std::max(high, range.endColumn);
     }
-    std::fill(to + endColumn, to + columns, 0.0f);
+    if (!m_General.empty())
+    {
+      const float * const from = m_GeneralSums.data() + static_cast<std::size_t>(row) * columns;
+      std::transform(to, to + columns, from, to, std::plus<>());
+      low = 0;
+      high = columns;
+    }
+    if (low < high)
+    {
+      m_Rays.StepLengths(row, low, high, lengths.data());
+      std::transform(to + low, to + high, lengths.data(), to + low, std::multiplies<>());
+    }
   }
 }
 } // namespace
+
+void
+ProjectMesh(const ProjectionModel &                 model,
+            const std::vector<XRayGeometry::View> & views,
+            const LoopRunner &                      loops,
+            const std::vector<float *> &            images)
+{
+  struct Part
+  {
+    std::size_t view, task;
+  };
+  const projection::Kernels &                   kernels = projection::SelectKernels(model.Options().portable);
+  std::vector<std::unique_ptr<ModelProjection>> projections;
+  std::vector<Part>                             parts;
+  for (std::size_t v = 0; v < views.size(); ++v)
+  {
+    projections.push_back(std::make_unique<ModelProjection>(model, views[v]));
+    for (std::size_t task = 0; task < projections[v]->Tasks(); ++task)
+    {
+      parts.push_back({ v, task });
+    }
+  }
+  loops.draw(parts.size(), [&](std::size_t i) { projections[parts[i].view]->Draw(parts[i].task, kernels); });
+  constexpr int rowsAtOnce = 128;
+  parts.clear();
+  for (std::size_t v = 0; v < views.size(); ++v)
+  {
+    for (int row = 0; row < views[v].size[1]; row += rowsAtOnce)
+    {
+      parts.push_back({ v, static_cast<std::size_t>(row) });
+    }
+  }
+  loops.prepare(parts.size(), [&](std::size_t i) {
+    const int first = static_cast<int>(parts[i].task), rows = views[parts[i].view].size[1];
+    projections[parts[i].view]->WriteRows(first, std::min(rows, first + rowsAtOnce), images[parts[i].view]);
+  });
+}
 
 void
 ProjectMesh(const std::vector<Vector3> &            points,
@@ -109,21 +468,6 @@ ProjectMesh(const std::vector<Vector3> &            points,
             const LoopRunner &                      loops,
             const std::vector<float *> &            images)
 {
-  const projection::Kernels &                      kernels = projection::SelectKernels(options.portable);
-  std::vector<ProjectedCells>                      projected;
-  std::vector<std::pair<std::size_t, std::size_t>> bands; // view, band
-  projected.reserve(views.size());
-  for (std::size_t v = 0; v < views.size(); ++v)
-  {
-    projected.emplace_back(points, cells, views[v], options, BandCount(views[v]));
-    projected.back().Prepare(loops.prepare);
-    for (std::size_t band = 0; band < projected.back().Bands(); ++band)
-    {
-      bands.emplace_back(v, band);
-    }
-  }
-  loops.draw(bands.size(), [&](std::size_t i) {
-    DrawBand(projected[bands[i].first], kernels, bands[i].second, images[bands[i].first]);
-  });
+  ProjectMesh(ProjectionModel(points, cells, options, loops.prepare, views.size() > 1), views, loops, images);
 }
 } // namespace bone

@@ -10,13 +10,6 @@
 
 namespace bone
 {
-namespace
-{
-/** A cell of which a vertex is nearer to the source's plane than this part of the way to the detector takes the general
- * path: its projection may be unbounded. */
-constexpr double nearSource = 0.02;
-} // namespace
-
 ProjectedCells::ProjectedCells(const std::vector<Vector3> &  points,
                                const MeshArrays &            cells,
                                const XRayGeometry::View &    view,
@@ -100,17 +93,17 @@ ProjectedCells::SetBands()
 }
 
 projection::CellGroup
-ProjectedCells::MakeGroup(const projection::CellRun & run, std::size_t first) const
+ProjectedCells::MakeGroup(const IdType * ids, int count) const
 {
   projection::CellGroup group;
-  group.count = static_cast<int>(std::min<std::size_t>(projection::groupSize, run.count - first));
-  group.degree = run.degree;
-  group.scale = run.scale;
-  group.offset = run.offset;
-  group.parallel = run.parallel;
+  group.count = count;
+  group.degree = m_Density.Degree(ids[0]);
+  group.scale = m_Options.scale;
+  group.offset = m_Options.offset;
+  group.parallel = m_Frame.IsParallel();
   for (int g = 0; g < group.count; ++g)
   {
-    const std::size_t t = run.ids[first + g];
+    const std::size_t t = ids[g];
     for (int i = 0; i < 4; ++i)
     {
       const ProjectedPoint & p = m_Projected[m_Cells.tetrahedra[t][i]];

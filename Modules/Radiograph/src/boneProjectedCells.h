@@ -22,6 +22,10 @@ struct CellChord
 /** A point's column, row and s, see RayFrame::Project, and 0. */
 using ProjectedPoint = Eigen::Array4d;
 
+/** A cell of which a vertex is nearer to the source's plane than this part of the way to the detector takes the general
+ * path: its projection may be unbounded. */
+constexpr double nearSource = 0.02;
+
 /** The tetrahedra of a mesh as a view sees them, by bands of rows. */
 class ProjectedCells
 {
@@ -69,14 +73,9 @@ public:
   std::pair<int, int>
   ColumnsOf(const std::vector<IdType> & ids) const;
 
-  /** Calls drawRun(run) for the cells of `ids` that lie wholly between source and detector, by runs of one degree, and
-   * drawGeneral(t) for those near the source or through the detector, in the order of `ids`. */
-  template <typename TRun, typename TGeneral>
-  void
-  ForEachRun(const std::vector<IdType> & ids, const TRun & drawRun, const TGeneral & drawGeneral) const;
-
-  /** The same by groups of up to projection::groupSize: drawGroup(group, ids of its members, how many ids of the next
-   * groups follow these). */
+  /** Calls drawGroup(group, ids of its members, how many ids of cells of the same kind and degree follow these) for the
+   * cells of `ids` that lie wholly between source and detector, by groups of up to projection::groupSize of one degree,
+   * and drawGeneral(t) for those near the source or through the detector, in the order of `ids`. */
   template <typename TGroup, typename TGeneral>
   void
   ForEachGroup(const std::vector<IdType> & ids, const TGroup & drawGroup, const TGeneral & drawGeneral) const;
@@ -115,7 +114,7 @@ private:
   void
   FillBins(std::size_t first, std::size_t end, Bins & bins) const;
   projection::CellGroup
-  MakeGroup(const projection::CellRun & run, std::size_t first) const;
+  MakeGroup(const IdType * ids, int count) const;
   ColumnRun
   ColumnsOfRow(const CellLines & lines, int row) const;
 
@@ -150,15 +149,16 @@ ForEachInBlocks(const ParallelFor & parallelFor, std::size_t count, const TFunct
   });
 }
 
-template <typename TRun, typename TGeneral>
+template <typename TGroup, typename TGeneral>
 void
-ProjectedCells::ForEachRun(const std::vector<IdType> & ids, const TRun & drawRun, const TGeneral & drawGeneral) const
+ProjectedCells::ForEachGroup(const std::vector<IdType> & ids,
+                             const TGroup &              drawGroup,
+                             const TGeneral &            drawGeneral) const
 {
   for (std::size_t i = 0; i < ids.size();)
   {
     const auto t = static_cast<std::size_t>(ids[i]);
     const Path path = m_Rows[t].path;
-    const int  degree = m_Density.Degree(t);
     if (path != Path::Kernel)
     {
       if (path == Path::General)
@@ -169,40 +169,19 @@ ProjectedCells::ForEachRun(const std::vector<IdType> & ids, const TRun & drawRun
       continue;
     }
     std::size_t end = i + 1;
-    while (end < ids.size() && m_Rows[ids[end]].path == Path::Kernel && m_Density.Degree(ids[end]) == degree)
+    while (end < ids.size() && m_Rows[ids[end]].path == Path::Kernel &&
+           m_Density.Degree(ids[end]) == m_Density.Degree(t))
     {
       ++end;
     }
-    drawRun(projection::CellRun{ ids.data() + i,
-                                 end - i,
-                                 m_Projected.front().data(),
-                                 m_Cells.tetrahedra.front().data(),
-                                 m_Density.Coefficients(0),
-                                 m_Density.Stride(),
-                                 degree,
-                                 m_Options.scale,
-                                 m_Options.offset,
-                                 m_Frame.IsParallel() });
-    i = end;
+    for (; i < end;)
+    {
+      const int             count = static_cast<int>(std::min<std::size_t>(projection::groupSize, end - i));
+      projection::CellGroup group = MakeGroup(&ids[i], count);
+      drawGroup(group, &ids[i], end - i - count);
+      i += count;
+    }
   }
-}
-
-template <typename TGroup, typename TGeneral>
-void
-ProjectedCells::ForEachGroup(const std::vector<IdType> & ids,
-                             const TGroup &              drawGroup,
-                             const TGeneral &            drawGeneral) const
-{
-  ForEachRun(
-    ids,
-    [&](const projection::CellRun & run) {
-      for (std::size_t i = 0; i < run.count; i += projection::groupSize)
-      {
-        projection::CellGroup group = MakeGroup(run, i);
-        drawGroup(group, run.ids + i, run.count - i - group.count);
-      }
-    },
-    drawGeneral);
 }
 
 template <typename TFunction>

@@ -8,13 +8,15 @@
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
 #else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
+#pragma GCC            push_options
+#pragma GCC            target("avx2,fma")
+// Vectors are handed over within this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 #define BONE_PROJECTION_NAMESPACE avx2
 #define BONE_PROJECTION_TILE_ROWS 1
-#include "boneStripKernel.hxx"
+#include "boneBlockKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 
@@ -28,7 +30,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx2Kernels = { avx2::AddCells, avx2::DeriveCells, avx2::AdjoinCells };
+const Kernels avx2Kernels = { avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinCells };
 } // namespace projection
 } // namespace bone
 

@@ -14,7 +14,7 @@
 
 #define BONE_PROJECTION_NAMESPACE avx512
 #define BONE_PROJECTION_TILE_ROWS 2
-#include "boneStripKernel.hxx"
+#include "boneBlockKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 
@@ -28,7 +28,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx512Kernels = { avx512::AddCells, avx512::DeriveCells, avx512::AdjoinCells };
+const Kernels avx512Kernels = { avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinCells };
 } // namespace projection
 } // namespace bone
 

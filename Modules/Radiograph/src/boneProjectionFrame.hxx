@@ -127,6 +127,13 @@ typedef double Group __attribute__((vector_size(groupSize * sizeof(double))));
 constexpr int               batchSize = 2 * groupSize;
 typedef Vector<float>::Type Batch;
 static_assert(batchSize == lanes, "both are eight");
+typedef Vector<double>::Type Octet; ///< the same in double precision
+
+inline Batch
+Narrow(const Octet & x)
+{
+  return __builtin_convertvector(x, Batch);
+}
 
 inline Batch
 Narrow(Group low, Group high)
@@ -136,20 +143,22 @@ Narrow(Group low, Group high)
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/** What has a value for each cell of a group. */
-struct GroupFrame
+/** The frames of several cells, a number of each in every vector. */
+template <typename TLanes>
+struct Frames
 {
-  Group c0, r0, s0;
-  Group halfWidth, halfHeight, halfDepth; ///< wc, wr, h
-  Group perWidth, perHeight;              ///< their reciprocals
-  Group columns[2], rows[2];              ///< least and greatest of the vertices
-  Group kappa;
-  Group mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
-  Group volume;      ///< in the frame's units, signed
-  Group slope[4];    ///< v * slope + (mu0 + mu1 xi + mu2 eta) is a barycentric coordinate times 1 + kappa v
-  Group inPlane[4];  ///< |mu1| + |mu2|
-  Group depth[4][3]; ///< v of the face planes: constant, per column, per row
+  TLanes c0, r0, s0;
+  TLanes halfWidth, halfHeight, halfDepth; ///< wc, wr, h
+  TLanes perWidth, perHeight;              ///< their reciprocals
+  TLanes columns[2], rows[2];              ///< least and greatest of the vertices
+  TLanes kappa;
+  TLanes mu[4][4];    ///< columns of the barycentric coordinates as a function of (1, X, Y, z)
+  TLanes volume;      ///< in the frame's units, signed
+  TLanes slope[4];    ///< v * slope + (mu0 + mu1 xi + mu2 eta) is a barycentric coordinate times 1 + kappa v
+  TLanes inPlane[4];  ///< |mu1| + |mu2|
+  TLanes depth[4][3]; ///< v of the face planes: constant, per column, per row
 };
+using GroupFrame = Frames<Group>;
 
 /** A column limit: column >= (left) or <= (right) at + perRow * (row - r0). */
 struct Limit
@@ -166,7 +175,7 @@ struct Frame
   double kappa;
   int    firstRow, endRow; ///< rows in the band
   int    firstColumn, endColumn;
-  double depth[4][3]; ///< as in GroupFrame, fronts first; where there are less than four, the last one again
+  double depth[4][3]; ///< as in Frames, fronts first; where there are less than four, the last one again
   int    face[4];     ///< the vertex opposite to each of these planes
   int    fronts;      ///< 1..3
   bool   steep;       ///< a plane is seen too nearly edge-on for single precision
@@ -179,13 +188,9 @@ Absolute(double x)
 {
   return x < 0 ? -x : x;
 }
-inline Group
-Absolute(Group x)
-{
-  return x < 0 ? -x : x;
-}
-inline Batch
-Absolute(Batch x)
+template <typename TLanes>
+inline TLanes
+Absolute(const TLanes & x)
 {
   return x < 0 ? -x : x;
 }
@@ -214,8 +219,9 @@ Load(const double (&from)[4][groupSize], Group (&to)[4])
   __builtin_memcpy(to, from, sizeof(to));
 }
 
+template <typename TLanes>
 inline void
-SetRange(const Group (&x)[4], Group (&range)[2], Group & centre, Group & half)
+SetRange(const TLanes (&x)[4], TLanes (&range)[2], TLanes & centre, TLanes & half)
 {
   range[0] = range[1] = x[0];
   for (int i = 1; i < 4; ++i)
@@ -228,10 +234,11 @@ SetRange(const Group (&x)[4], Group (&range)[2], Group & centre, Group & half)
 }
 
 /** The barycentric coordinates in the frame, from the vertices in it. */
+template <typename TLanes>
 inline void
-SetBarycentric(const Group (&p)[4][3], GroupFrame & frame)
+SetBarycentric(const TLanes (&p)[4][3], Frames<TLanes> & frame)
 {
-  Group e[3][3], normal[3][3];
+  TLanes e[3][3], normal[3][3];
   for (int i = 0; i < 3; ++i)
   {
     for (int k = 0; k < 3; ++k)
@@ -241,23 +248,23 @@ SetBarycentric(const Group (&p)[4][3], GroupFrame & frame)
   }
   for (int i = 0; i < 3; ++i)
   {
-    const Group(&u)[3] = e[(i + 1) % 3];
-    const Group(&v)[3] = e[(i + 2) % 3];
+    const TLanes(&u)[3] = e[(i + 1) % 3];
+    const TLanes(&v)[3] = e[(i + 2) % 3];
     normal[i][0] = u[1] * v[2] - u[2] * v[1];
     normal[i][1] = u[2] * v[0] - u[0] * v[2];
     normal[i][2] = u[0] * v[1] - u[1] * v[0];
   }
-  const Group none{};
+  const TLanes none{};
   frame.volume = e[0][0] * normal[0][0] + e[0][1] * normal[0][1] + e[0][2] * normal[0][2];
-  const Group inverse = 1.0 / frame.volume;
+  const TLanes inverse = 1.0 / frame.volume;
   frame.mu[0][0] = none + 1.0;
   frame.mu[1][0] = frame.mu[2][0] = frame.mu[3][0] = none;
   for (int i = 0; i < 3; ++i)
   {
-    Group atCentre = none;
+    TLanes atCentre = none;
     for (int k = 0; k < 3; ++k)
     {
-      const Group gradient = normal[i][k] * inverse;
+      const TLanes gradient = normal[i][k] * inverse;
       frame.mu[k + 1][i + 1] = gradient;
       atCentre -= gradient * p[0][k];
       frame.mu[k + 1][0] -= gradient;
@@ -267,23 +274,28 @@ SetBarycentric(const Group (&p)[4][3], GroupFrame & frame)
   }
 }
 
-/** Everything of GroupFrame, from the vertices. */
+/** Everything of Frames, from the vertices. */
+template <typename TLanes>
 inline void
-SetGroupFrame(const Group (&column)[4], const Group (&row)[4], const Group (&s)[4], bool parallel, GroupFrame & frame)
+SetFrames(const TLanes (&column)[4],
+          const TLanes (&row)[4],
+          const TLanes (&s)[4],
+          bool             parallel,
+          Frames<TLanes> & frame)
 {
   SetRange(column, frame.columns, frame.c0, frame.halfWidth);
   SetRange(row, frame.rows, frame.r0, frame.halfHeight);
-  Group range[2];
+  TLanes range[2];
   SetRange(s, range, frame.s0, frame.halfDepth);
-  const Group none{}, perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
+  const TLanes none{}, perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
   frame.perWidth = perWidth;
   frame.perHeight = perHeight;
-  const Group perDepth = 1.0 / frame.halfDepth, perS = parallel ? none : 1.0 / frame.s0;
+  const TLanes perDepth = 1.0 / frame.halfDepth, perS = parallel ? none : 1.0 / frame.s0;
   frame.kappa = frame.halfDepth * perS;
-  Group p[4][3];
+  TLanes p[4][3];
   for (int i = 0; i < 4; ++i)
   {
-    const Group magnification = parallel ? none + 1.0 : s[i] * perS;
+    const TLanes magnification = parallel ? none + 1.0 : s[i] * perS;
     p[i][0] = magnification * (column[i] - frame.c0) * perWidth;
     p[i][1] = magnification * (row[i] - frame.r0) * perHeight;
     p[i][2] = (s[i] - frame.s0) * perDepth;
@@ -293,7 +305,7 @@ SetGroupFrame(const Group (&column)[4], const Group (&row)[4], const Group (&s)[
   {
     frame.slope[i] = frame.kappa * frame.mu[0][i] - frame.mu[3][i];
     frame.inPlane[i] = Absolute(frame.mu[1][i]) + Absolute(frame.mu[2][i]);
-    const Group inverse = -1.0 / frame.slope[i];
+    const TLanes inverse = -1.0 / frame.slope[i];
     frame.depth[i][0] = frame.mu[0][i] * inverse;
     frame.depth[i][1] = frame.mu[1][i] * inverse * perWidth;
     frame.depth[i][2] = frame.mu[2][i] * inverse * perHeight;
@@ -307,7 +319,7 @@ SetGroupFrame(const CellGroup & group, GroupFrame & frame)
   Load(group.column, column);
   Load(group.row, row);
   Load(group.s, s);
-  SetGroupFrame(column, row, s, group.parallel, frame);
+  SetFrames(column, row, s, group.parallel, frame);
 }
 
 /** Pixels of one cell of a group; false where it meets none of the band or is flat. */
@@ -324,7 +336,7 @@ PlaceFrame(const GroupFrame & group, int member, const Band & band, Frame & fram
   const int firstColumn = -Floor(-group.columns[0][member]), endColumn = Floor(group.columns[1][member]) + 1;
   frame.firstRow = firstRow < band.firstRow ? band.firstRow : firstRow;
   frame.endRow = endRow > band.endRow ? band.endRow : endRow;
-  frame.firstColumn = firstColumn < 0 ? 0 : firstColumn;
+  frame.firstColumn = firstColumn < band.firstColumn ? band.firstColumn : firstColumn;
   frame.endColumn = endColumn > band.columns ? band.columns : endColumn;
   return frame.firstRow < frame.endRow && frame.firstColumn < frame.endColumn && frame.halfWidth > 0 &&
          frame.halfHeight > 0 && group.halfDepth[member] > 0 && Absolute(group.volume[member]) > 0;

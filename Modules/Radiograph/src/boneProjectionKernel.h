@@ -15,25 +15,29 @@ namespace projection
 /** Pixels that are computed at once; a band's rows are padded by as many. */
 constexpr int lanes = 8;
 
-/** Rows after a band's last that Kernels::add may write to. */
+/** Rows after a band's last, and columns after its last, that Kernels::add may write to. */
 constexpr int spareRows = 1;
+constexpr int spareColumns = 16;
 
 /** Cells whose set-up in double precision is done at once. */
 constexpr int groupSize = 4;
 
-/** Tetrahedra of one degree, wholly between source and detector. */
-struct CellRun
+/** Blocks of eight tetrahedra of one degree, wholly between source and detector, and how they are seen. */
+struct BlockRun
 {
-  const std::int32_t * ids;
-  std::size_t          count;
-  const double *       points;       ///< of each: column, row, s (see RayFrame) and 0
-  const std::int32_t * vertices;     ///< four a tetrahedron
-  const double *       coefficients; ///< a row a tetrahedron
-  std::size_t          stride;       ///< from row to row
+  const std::int32_t * blocks;        ///< which
+  std::size_t          count;         ///< of these
+  const double *       vertices;      ///< of each block: 4 vertices, 3 coordinates (mm), eight tetrahedra
+  const float *        coefficients;  ///< of each block: Bernstein coefficients of what is integrated, eight tetrahedra
+  const std::int32_t * cells;         ///< of each block: eight; -1 after the last of all
+  const double *       density;       ///< coefficients as they are given, a row a tetrahedron
+  std::size_t          densityStride; ///< from row to row
   int                  degree;
   double               scale; ///< scale * density + offset is integrated
   double               offset;
-  bool                 parallel;
+  double               origin[3]; ///< of the rays
+  double toPixel[3][3];           ///< from a displacement to (s, column s, row s), in a parallel beam (s, column, row)
+  bool   parallel;
 };
 
 /** Tetrahedra of one degree as the view sees them, wholly between source and detector. */
@@ -50,8 +54,8 @@ struct CellGroup
   bool           parallel;
 };
 
-/** Rows [firstRow, endRow) of the image. Kernels::add adds to them integrals in s, not yet times the rays' step length;
- * Kernels::derive takes stride and firstColumn in pixels of all modes' numbers. */
+/** Rows [firstRow, endRow) and columns [firstColumn, columns) of the image. Kernels::add adds to them integrals in s,
+ * not yet times the rays' step length; Kernels::derive takes stride and firstColumn in pixels of all modes' numbers. */
 struct Band
 {
   float *        data; ///< pixel (firstColumn, firstRow)
@@ -59,7 +63,7 @@ struct Band
   int            firstRow;
   int            endRow;
   int            columns;
-  int            firstColumn{ 0 }; ///< 0 for Kernels::add
+  int            firstColumn{ 0 };
 };
 
 /** Modes that are computed at once: a pixel has whole blocks of as many numbers. */
@@ -95,8 +99,8 @@ struct Adjoint
 struct Kernels
 {
   /** Adds the tetrahedra's integrals to the band, in order. */
-  void (*add)(const CellRun & run, const Band & band);
-  /** The same for a group, with derivatives. */
+  void (*add)(const BlockRun & run, const Band & band);
+  /** The same for a group, with derivatives; fills the group up. */
   void (*derive)(CellGroup & group, const Derivatives & derivatives, const Band & band);
   /** Sets the sums of each cell that the band sees. */
   void (*adjoin)(CellGroup & group, const Adjoint & adjoint, const Band & band);

@@ -352,7 +352,7 @@ AddRows(const Frame & frame, const RowPolynomial<TReal, N> & polynomial, const B
                                 static_cast<TReal>(xiPerColumn),
                                 static_cast<TReal>(frame.kappa),
                                 runs.count[j],
-                                band.data + (r - band.firstRow) * band.stride + first);
+                                band.data + (r - band.firstRow) * band.stride + first - band.firstColumn);
     }
   }
 }

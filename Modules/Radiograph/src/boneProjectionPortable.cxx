@@ -10,7 +10,7 @@
 
 #define BONE_PROJECTION_NAMESPACE portable
 #define BONE_PROJECTION_TILE_ROWS 1
-#include "boneStripKernel.hxx"
+#include "boneBlockKernel.hxx"
 
 #include "boneDerivativeKernel.hxx"
 
@@ -18,7 +18,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels portableKernels = { portable::AddCells, portable::DeriveCells, portable::AdjoinCells };
+const Kernels portableKernels = { portable::AddBlocks, portable::DeriveCells, portable::AdjoinCells };
 
 const Kernels &
 SelectKernels(bool portable)

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneMeshRadiograph.h"
 
+#include "boneProjectionModel.h"
 #include "boneRadiographTestMeshes.h"
 #include "boneRayFrame.h"
 
@@ -246,6 +247,47 @@ TEST(MeshRadiograph, SeveralViewsInOneCallAreThoseOfEach)
   {
     EXPECT_EQ(images[i], Project(mesh, views[i]));
   }
+}
+
+TEST(MeshRadiograph, AKeptModelGivesTheImagesOfTheMesh)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, MaximumBernsteinDegree, 3);
+  for (std::size_t t = 0; t < mesh.degree.size(); ++t)
+  {
+    mesh.degree[t] = static_cast<decltype(mesh.degree)::value_type>(t % (MaximumBernsteinDegree + 1));
+  }
+  MeshRadiographOptions options;
+  options.scale = 1.5;
+  options.offset = -0.25;
+  const ProjectionModel model(mesh.points, mesh, options, Sequential().prepare);
+  for (const View & view : { Oblique(false), Oblique(true, 50), Oblique(false, 33) })
+  {
+    std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+    ProjectMesh(model, { view }, Sequential(true), { image.data() });
+    EXPECT_EQ(image, Project(mesh, view, options));
+    EXPECT_LT(Difference(image, Walk(mesh, view, options)), 1e-5);
+  }
+}
+
+TEST(MeshRadiograph, DoesNotDependOnTheOrderOfTheCells)
+{
+  auto mesh = Box({ { 5, 4, 6 } }, 0.3);
+  test::SetRandom(mesh, 3, 12);
+  const View               view = Oblique(false, 90);
+  const auto               image = Project(mesh, view);
+  MeshArrays               shuffled = mesh;
+  std::vector<std::size_t> order(mesh.tetrahedra.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(4));
+  const std::size_t stride = mesh.coefficients.size() / order.size();
+  for (std::size_t t = 0; t < order.size(); ++t)
+  {
+    shuffled.tetrahedra[t] = mesh.tetrahedra[order[t]];
+    shuffled.degree[t] = mesh.degree[order[t]];
+    std::copy_n(&mesh.coefficients[order[t] * stride], stride, &shuffled.coefficients[t * stride]);
+  }
+  EXPECT_LT(Difference(Project(shuffled, view), image), 2e-6);
 }
 
 TEST(MeshRadiograph, PolynomialsOfAnyDegreeMatchTheirClosedForm)

@@ -1,0 +1,105 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneProjectionModel_h
+#define boneProjectionModel_h
+
+#include "boneLoopRunner.h"
+#include "boneMeshRadiograph.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace bone
+{
+/** \class ProjectionModel
+ * \brief A density model made ready for any number of radiographs by ProjectMesh: what does not depend on the view.
+ *
+ * Its tetrahedra of each degree lie in blocks of eight that are near each other: vertices in double, coefficients of
+ * what is integrated in single precision, a block's numbers one beside the other. About 200 bytes a tetrahedron of
+ * degree 3. */
+class ProjectionModel
+{
+public:
+  /** Of the mesh with these points (mm; `cells.points` is not looked at), which must hold a density and, as the cells,
+   * must outlive the model: see \ref MeshRadiograph. Without `keep` only the blocks are formed, and filled for each
+   * radiograph anew: less work where there is but one. */
+  ProjectionModel(const std::vector<Vector3> &  points,
+                  const MeshArrays &            cells,
+                  const MeshRadiographOptions & options,
+                  const ParallelFor &           parallelFor,
+                  bool                          keep = true);
+
+  /** The tetrahedra of one degree. */
+  struct Blocks
+  {
+    static constexpr int size = 8;
+    static constexpr int verticesSize = 12 * size; ///< numbers a block
+
+    int                       degree{ 0 };
+    std::vector<std::int32_t> cells;        ///< of each block; -1 after the last one of all
+    std::vector<Vector3>      centres;      ///< of each block's bounding box
+    std::vector<Vector3>      halfSizes;    ///< the box's
+    std::vector<double>       vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), tetrahedra
+    std::vector<float>        coefficients; ///< of each block: scale * Bernstein coefficient + offset, tetrahedra
+
+    std::size_t
+    Count() const
+    {
+      return centres.size();
+    }
+    std::size_t
+    CoefficientsSize() const; ///< numbers a block
+    bool
+    IsKept() const
+    {
+      return !vertices.empty();
+    }
+  };
+
+  const std::vector<Blocks> &
+  ByDegree() const
+  {
+    return m_Blocks;
+  }
+  /** Writes a block's vertices and coefficients. */
+  void
+  Fill(const Blocks & blocks, std::size_t block, double * vertices, float * coefficients) const;
+
+  const std::vector<Vector3> &
+  Points() const
+  {
+    return m_Points;
+  }
+  const MeshArrays &
+  Cells() const
+  {
+    return m_Cells;
+  }
+  const MeshRadiographOptions &
+  Options() const
+  {
+    return m_Options;
+  }
+
+private:
+  void
+  SetCells(const std::vector<std::int32_t> & sorted);
+  void
+  SetBox(Blocks & blocks, std::size_t block) const;
+
+  const std::vector<Vector3> & m_Points;
+  const MeshArrays &           m_Cells;
+  MeshRadiographOptions        m_Options;
+  std::vector<Blocks>          m_Blocks;
+};
+
+/** ProjectMesh for a model that is kept, see \ref MeshRadiograph. */
+void
+ProjectMesh(const ProjectionModel &                 model,
+            const std::vector<XRayGeometry::View> & views,
+            const LoopRunner &                      loops,
+            const std::vector<float *> &            images);
+} // namespace bone
+
+#endif
