@@ -168,7 +168,10 @@ AddFitCommand(CLI::App & app, Action & action)
                  "Lowest degree, up to --degree, whose root mean square error in the tetrahedron is at most this")
     ->check(Positive())
     ->excludes(continuous);
-  command->add_option("--interpolator", options->interpolator, "Between voxels: linear (default) or bspline (cubic)")
+  command
+    ->add_option("--interpolator",
+                 options->interpolator,
+                 "Between voxels: linear (default; its error by curvature is taken off) or bspline (cubic)")
     ->check(CLI::IsMember({ "linear", "bspline" }).description(""));
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
   command

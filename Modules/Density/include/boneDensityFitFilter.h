@@ -35,8 +35,9 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  *
  * Inputs: the mesh (primary, "Mesh"), of any valid shape; "Image", a 3D image whose geometry (origin, spacing,
  * direction, start index) is honoured; "Weights", optional, an image of 0 or more on any grid: how much the values at a
- * place count (0: not at all, as in an artefact). Output: the mesh, its points and attributes as they were, with the
- * density's degree, coefficients and quantity; a density that the input held is replaced.
+ * place count (0: not at all, as in an artefact; interpolation reaches two voxels, so mark it with that rim). Output:
+ * the mesh, its points and attributes as they were, with the density's degree, coefficients and quantity; a density
+ * that the input held is replaced.
  *
  * Each tetrahedron samples the interpolated image at a fixed pattern of interior points (\ref DensityFitKernel), more
  * than twice as many as there are coefficients and several for each voxel in it (\ref DensityFitPlan); their
@@ -50,7 +51,8 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  * - Degree: 0..8, default 3; 1, 4, 10, 20, 35, 56, 84, 120, 165 coefficients for each tetrahedron.
  * - Continuous: one least-squares spline for each region (\ref MakeDensityContinuous) in place of tetrahedra on their
  *   own; needs degree 1 or more. Jumps remain between regions. Default off.
- * - Interpolator: Linear (default) or CubicBSpline.
+ * - Interpolator: Linear (default), which is freed of its error by curvature (\ref QuadraticSampler) so that the mass
+ * is kept, or CubicBSpline (\ref CubicSampler).
  * - VoxelWeight: of the voxels' own values against the interpolated image, no unit, default 4; 0: the interpolated
  * image alone.
  * - Tikhonov: weight of the term that holds control values near those of the lower degree (\ref DensityFitKernel),

@@ -8,6 +8,7 @@
 #include "boneCubicSampler.h"
 #include "boneDensityFitFilter.h"
 #include "boneLinearSampler.h"
+#include "boneQuadraticSampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -174,7 +175,7 @@ DensityFitFilter<TImage, TMesh>::MakeInterpolator(const TPixel *     buffer,
 {
   if (m_Interpolator == DensityInterpolator::Linear)
   {
-    return SamplerOf(LinearSampler<TPixel>(buffer, grid.size));
+    return SamplerOf(QuadraticSampler<TPixel>(buffer, grid.size));
   }
   // The spline of the block around the mesh; a voxel's influence falls to a quarter with each step away from it.
   const Eigen::Matrix3d toIndex = grid.axes.inverse();

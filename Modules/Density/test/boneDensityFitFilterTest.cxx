@@ -102,6 +102,55 @@ TEST(DensityFitFilter, ALinearFieldIsExactOnAMeshOfFloatsAndAnImageOfShorts)
   ExpectLinear(*shortFilter, mesh, 1, 1.5); // values rounded by up to 0.5, control values further out than the voxels
 }
 
+TEST(DensityFitFilter, AQuadraticFieldIsExactFromDegreeTwoOn)
+{
+  const auto quadratic = [](const Vector3 & x) {
+    return 5 * x[0] * x[0] - 3 * x[0] * x[1] + 2 * x[2] * x[2] + test::Linear(x);
+  };
+  const auto       image = test::ObliqueImage<test::DoubleImage>(quadratic);
+  const MeshArrays mesh = Block();
+  for (int degree = 2; degree <= MaximumBernsteinDegree; ++degree)
+  {
+    auto filter = MakeFit(mesh, image.GetPointer(), degree);
+    filter->SetTikhonov(0);
+    filter->Update();
+    const std::vector<double> & fitted = filter->GetOutput()->GetCells().coefficients;
+    const Barycentric           mu(0.4, 0.1, 0.2, 0.3);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    {
+      Vector3 x = Vector3::Zero();
+      for (int i = 0; i < 4; ++i)
+      {
+        x += mu[i] * mesh.points[mesh.tetrahedra[t][i]];
+      }
+      ASSERT_NEAR(BernsteinValue(degree, &fitted[t * BernsteinCount(degree)], mu), quadratic(x), 1e-7);
+    }
+  }
+}
+
+TEST(DensityFitFilter, InterpolationKeepsTheMassOfABoneThatFadesAtItsSurface)
+{
+  // A ball of 3 mm (one standard deviation); the block's surface lies where its density falls off and is curved most.
+  const double  deviation = 3;
+  const Vector3 middle = Lower + Vector3(10, 10, 10);
+  const auto    image = test::ObliqueImage<test::DoubleImage>(
+    [&](const Vector3 & x) { return 1000 * std::exp(-(x - middle).squaredNorm() / (2 * deviation * deviation)); });
+  const MeshArrays mesh = test::MakeBlock({ { 2, 2, 2 } }, Lower + Vector3(5, 5, 5), 5.0, 0.15);
+  const double     along = deviation * std::sqrt(2 * std::acos(-1.0)) * std::erf(5 / (deviation * std::sqrt(2.0)));
+  for (int degree = 0; degree <= MaximumBernsteinDegree; ++degree)
+  {
+    auto filter = MakeFit(mesh, image.GetPointer(), degree);
+    filter->SetVoxelWeight(0);
+    filter->Update();
+    double mass = 0;
+    for (const RegionDensity & region : MeasureRegions(filter->GetOutput()->GetArrays()))
+    {
+      mass += region.mass;
+    }
+    EXPECT_NEAR(mass / (1000 * along * along * along), 1, 0.005);
+  }
+}
+
 TEST(DensityFitFilter, ErrorFallsWithTheDegreeDownToThatOfLinearInterpolation)
 {
   const auto       image = test::ObliqueImage<test::DoubleImage>(test::Smooth);
@@ -354,11 +403,11 @@ TEST(DensityFitFilter, ACubicSplineIsNearerToASmoothImageThanLinearInterpolation
 
 TEST(DensityFitFilter, WhatHasNoWeightDoesNotCount)
 {
-  const auto isBroken = [](const Vector3 & x) { return (x - Vector3(9, -6, 31)).norm() < 1.5; };
+  const auto isBroken = [](const Vector3 & x) { return (x - Vector3(10, -5, 30)).norm() < 1.5; };
   const auto image =
     test::ObliqueImage<test::DoubleImage>([&](const Vector3 & x) { return isBroken(x) ? 5000 : test::Linear(x); });
   const auto weights = test::ObliqueImage<test::DoubleImage>(
-    [](const Vector3 & x) { return (x - Vector3(9, -6, 31)).norm() < 4 ? 0.0 : 1.0; });
+    [](const Vector3 & x) { return (x - Vector3(10, -5, 30)).norm() < 5 ? 0.0 : 1.0; });
   const MeshArrays mesh = Block();
   auto             filter = MakeFit(mesh, image.GetPointer(), 1);
   filter->SetWeights(weights);
