@@ -55,7 +55,7 @@ CopyPoints(const TMesh & mesh)
  * or without tetrahedra.
  *
  * What does not depend on the view is kept from one update to the next while the mesh and the options are the same:
- * about 200 bytes a tetrahedron of degree 3, and further views take some two thirds of the time of the first.
+ * about 200 bytes a tetrahedron of degree 3; further views then take some three quarters of the time.
  *
  * \sa MeshRadiograph for the methods, VoxelDRRImageFilter for a CT */
 template <typename TMesh = DensityMesh<double>, typename TOutputImage = itk::Image<float, 3>>

@@ -14,9 +14,6 @@ namespace projection
 {
 namespace BONE_PROJECTION_NAMESPACE
 {
-/** Cells of more columns take AddRows. */
-constexpr int maximumColumns = lanes * lanes;
-
 /** Smallest integer not below x >= 0. */
 inline BatchIndex
 RoundUp(const Octet & x)
@@ -92,7 +89,7 @@ public:
       {
         continue;
       }
-      if (exact[g] != 0 || box.endColumn - box.firstColumn > maximumColumns)
+      if (exact[g] != 0)
       {
         AddExact(cells[g], g);
       }

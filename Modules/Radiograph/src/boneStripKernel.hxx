@@ -194,19 +194,27 @@ void
 AddStrips(const StripCell & cell, const float * densities, const PixelBox & box, const Band & band)
 {
   constexpr float margin = 0.01f;
+  constexpr int   stripsAtOnce = lanes - 1; // as many as have two borders
   StripRows       rows;
-  SetStripRows(cell, box.firstColumn, rows);
-  int strip = 0;
+  int             strip = stripsAtOnce;
   for (int column = box.firstColumn; column < box.endColumn; column += lanes, ++strip)
   {
+    if (strip == stripsAtOnce)
+    {
+      SetStripRows(cell, column, rows);
+      strip = 0;
+    }
     const int low = -Floor(margin - rows.low[strip] - cell.r0), high = Floor(rows.high[strip] + margin + cell.r0) + 1;
     const int first = low > box.firstRow ? low : box.firstRow, end = high < box.endRow ? high : box.endRow;
-    float * const out = band.data + (first - band.firstRow) * band.stride + column - band.firstColumn;
-    AddStrip<N, TFronts>(cell, densities, column, first, end, out, band.stride);
+    if (first < end)
+    {
+      float * const out = band.data + (first - band.firstRow) * band.stride + column - band.firstColumn;
+      AddStrip<N, TFronts>(cell, densities, column, first, end, out, band.stride);
+    }
   }
 }
 
-/** A cell of up to as many strips as there are lanes. */
+/** A cell of any size. */
 template <int N>
 void
 AddStrips(const StripCell & cell, const float * densities, const PixelBox & box, const Band & band)
