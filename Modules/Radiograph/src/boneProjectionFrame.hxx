@@ -135,14 +135,6 @@ Narrow(const Octet & x)
   return __builtin_convertvector(x, Batch);
 }
 
-inline Batch
-Narrow(Group low, Group high)
-{
-  typedef float Half __attribute__((vector_size(groupSize * sizeof(float))));
-  const Half    a = __builtin_convertvector(low, Half), b = __builtin_convertvector(high, Half);
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
 /** The frames of several cells, a number of each in every vector. */
 template <typename TLanes>
 struct Frames

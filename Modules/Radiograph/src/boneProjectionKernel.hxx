@@ -416,40 +416,6 @@ LoadControl(const double * const (&coefficients)[groupSize],
   }
 }
 
-/** The same in single precision, of eight cells. */
-template <int N>
-void
-LoadControl(const double * const (&coefficients)[batchSize],
-            Batch scale,
-            Batch offset,
-            Batch (&control)[CoefficientCount(N)])
-{
-  constexpr int count = CoefficientCount(N);
-  for (int p = 0; p + groupSize <= count; p += groupSize)
-  {
-    Batch rows[groupSize];
-    for (int g = 0; g < groupSize; ++g)
-    {
-      Group low, high;
-      __builtin_memcpy(&low, coefficients[g] + p, sizeof(low));
-      __builtin_memcpy(&high, coefficients[g + groupSize] + p, sizeof(high));
-      rows[g] = Narrow(low, high);
-    }
-    Transpose(rows, control + p);
-  }
-  for (int p = count - count % groupSize; p < count; ++p)
-  {
-    for (int g = 0; g < batchSize; ++g)
-    {
-      control[p][g] = static_cast<float>(coefficients[g][p]);
-    }
-  }
-  for (Batch & value : control)
-  {
-    value = scale * value + offset;
-  }
-}
-
 /** From control values, which are density times h, to polynomials along the rays of each cell's frame. */
 template <int N, typename TLanes>
 void
