@@ -81,7 +81,7 @@ TimeModel(const std::string & name, const std::string & path, const XRayGeometry
   std::vector<float> image(Pixels(view));
   // As one of many radiographs of a mesh, and as the only one.
   const ProjectionModel model(mesh.points, mesh, {}, loops.prepare);
-  Time("model " + name, 100, [&]() { ProjectMesh(model, { view }, loops, { image.data() }); });
+  Time("model " + name, 600, [&]() { ProjectMesh(model, { view }, loops, { image.data() }); });
   Time("once " + name, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, loops, image.data()); });
   std::vector<std::int32_t> passed(image.size());
   WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());

@@ -187,12 +187,12 @@ floats), 18 a tetrahedron (four ids of 4, degree and region of 1) and 4 a coeffi
     return text
 
 
-def make_phantom(bonetk, folder, bone="femur", subject=0, *build):
+def make_phantom(bonetk, folder, bone="femur", subject=0, spacing=1, *build):
     """Model (level 1), noisy CT, labels and noise-free CT of a phantom, in a folder that may have them already."""
     ct, labels, clean = folder / "ct.nii.gz", folder / "labels.nii.gz", folder / "clean.nii.gz"
     if not clean.exists():
         folder.mkdir(exist_ok=True)
-        subject = ("--bone", bone, "--subject", subject)
+        subject = ("--bone", bone, "--subject", subject, "--spacing", spacing)
         run(bonetk, "phantom", *subject, "--noise", NOISE, "-o", ct, "--labels", labels, "-q")
         run(bonetk, "build", ct, "--labels", labels, *build, "-o", folder / "model", "-q")
         run(bonetk, "phantom", *subject, "-o", clean, "-q")
@@ -236,15 +236,18 @@ plot '{data}' using 3:2:1 with labels offset 1,0.5, '' using 3:2 with linespoint
 
 
 def other_phantoms(bonetk, work):
-    """Subjects of the same phantom, and the one of thin cortices as built by default and finer."""
+    """Subjects of the same phantom, one in finer voxels, and the one of thin cortices as built by default and finer."""
     rows = []
-    for bone, subject, *build in (("femur", 1), ("femur", 2), ("femur", 3), ("hemipelvis", 0), ("hemipelvis", 1),
-                                  ("hemipelvis", 0, "--tetrahedra", 100000), ("hemipelvis", 1, "--tetrahedra", 100000)):
-        mesh, ct, labels, clean = make_phantom(bonetk, work / "_".join(map(str, [bone, subject, *build])), bone, subject, *build)
+    for bone, subject, spacing, *build in (("femur", 1, 1), ("femur", 2, 1), ("femur", 3, 1), ("femur", 0, 0.7),
+                                           ("femur", 0, 0.7, "--tetrahedra", 50000), ("hemipelvis", 0, 1),
+                                           ("hemipelvis", 1, 1), ("hemipelvis", 0, 1, "--tetrahedra", 100000),
+                                           ("hemipelvis", 1, 1, "--tetrahedra", 100000)):
+        folder = work / "_".join(map(str, [bone, subject, spacing, *build]))
+        mesh, ct, labels, clean = make_phantom(bonetk, folder, bone, subject, spacing, *build)
         found = fits(mesh, ct, labels, 0, f"truth={clean}", "degrees=1,2,3,4,5,6,7,8")
         errors = {e["degree"]: e["all"]["mean"] for e in found}
         below = [n for n in errors if all(errors[m] < NOISE for m in errors if m >= n)]
-        rows.append((f"{bone}, subject {subject}", f"{found[0]['tetrahedra']:,}",
+        rows.append((f"{bone}, subject {subject}, {spacing} mm", f"{found[0]['tetrahedra']:,}",
                      f"{found[0]['meshVoxels'] / found[0]['tetrahedra']:.1f}", *(f"{errors[n]:.1f}" for n in (2, 3, 4, 6)),
                      f"from degree {min(below)}" if below else "no", min(errors, key=errors.get)))
     return "\nOther phantoms, mean absolute error (HU) by degree:\n\n" + table(
