@@ -123,6 +123,7 @@ private:
   {
     const TMesh *                          mesh{ nullptr };
     itk::ModifiedTimeType                  time{ 0 };
+    HUToAttenuation                        conversion{ HUToAttenuation::None };
     std::vector<Vector3>                   points;
     std::unique_ptr<const ProjectionModel> model;
   };

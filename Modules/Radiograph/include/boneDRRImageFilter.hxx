@@ -43,7 +43,7 @@ DRRImageFilter<TMesh, TOutputImage>::GetModel(const ParallelFor & parallelFor)
   const TMesh *               mesh = this->GetInput();
   const MeshRadiographOptions options = GetOptions();
   if (m_Kept.model == nullptr || m_Kept.mesh != mesh || m_Kept.time != mesh->GetMTime() ||
-      m_Kept.model->Options() != options)
+      m_Kept.conversion != this->GetHUToAttenuation() || m_Kept.model->Options() != options)
   {
     m_Kept.model.reset();
     m_Kept.mesh = nullptr;
@@ -51,6 +51,7 @@ DRRImageFilter<TMesh, TOutputImage>::GetModel(const ParallelFor & parallelFor)
     m_Kept.model = std::make_unique<const ProjectionModel>(m_Kept.points, mesh->GetCells(), options, parallelFor);
     m_Kept.mesh = mesh;
     m_Kept.time = mesh->GetMTime();
+    m_Kept.conversion = this->GetHUToAttenuation();
   }
   return *m_Kept.model;
 }

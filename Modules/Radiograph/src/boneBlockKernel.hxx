@@ -93,8 +93,7 @@ public:
       {
         AddExact(cells[g], g);
       }
-      else if (N <= maximumSpanDegree && fine[g] == 0 && box.Pixels() <= maximumSpanBox &&
-               box.endRow - box.firstRow <= maximumSpanRows)
+      else if (N <= maximumSpanDegree && fine[g] == 0 && FitsSpans(box))
       {
         AddToSpans(g, box, m_Frames.c0[g], m_Frames.r0[g], m_Band, m_Spans);
       }

@@ -19,9 +19,16 @@ namespace BONE_PROJECTION_NAMESPACE
 /** Of higher degrees a polynomial reduced to the column, as in strips, costs less than one at each pixel. */
 constexpr int maximumSpanDegree = 3;
 
-/** Cells whose bounding box has more pixels, or more rows, take strips. */
+/** Cells whose bounding box has more pixels, or more rows or columns than a byte counts, take strips. */
 constexpr int maximumSpanBox = 384;
-constexpr int maximumSpanRows = 256;
+constexpr int maximumSpanSide = 256;
+
+inline bool
+FitsSpans(const PixelBox & box)
+{
+  return box.Pixels() <= maximumSpanBox && box.endRow - box.firstRow <= maximumSpanSide &&
+         box.endColumn - box.firstColumn <= maximumSpanSide;
+}
 
 /** What the spans of a block need of its cells' frames. */
 struct BlockShape
@@ -132,7 +139,7 @@ struct SpanPiece
 struct SpanList
 {
   static constexpr int pixelCapacity = lanes * (maximumSpanBox + tileLanes);
-  static constexpr int pieceCapacity = lanes * 32; ///< a box of 384 pixels and 256 rows has at most 32 of 8 x 8
+  static constexpr int pieceCapacity = lanes * 32; ///< a box that FitsSpans has at most 32 of 8 x 8
   static constexpr int rowCapacity = pieceCapacity * tileLanes;
 
   SpanPiece      piece[pieceCapacity];

@@ -241,6 +241,8 @@ TEST(DRRImageFilter, WhatItKeepsIsOfTheMeshAndOptionsThatItHas)
   arrays.points[0] += Vector3(0.5, 0.25, -0.5);
   mesh->SetArrays(arrays);
   expectThatOfANewOne(arrays);
+  filter->SetHUToAttenuation(HUToAttenuation::Bilinear);
+  EXPECT_THROW(filter->Update(), itk::ExceptionObject);
 }
 
 TEST(DRRImageFilter, WaterScaledIsThatOfWaterPlusTheScaledDensity)

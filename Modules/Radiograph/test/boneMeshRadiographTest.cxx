@@ -535,6 +535,29 @@ TEST(MeshRadiograph, CellsOfAnySizeOnTheDetectorKeepTheirAccuracy)
   }
 }
 
+TEST(MeshRadiograph, CellsOfOneRowAndManyColumnsOrTheReverseKeepTheirAccuracy)
+{
+  auto mesh = Box({ { 2, 2, 2 } }, 0);
+  test::SetRandom(mesh, 2, 11);
+  for (auto & degree : mesh.degree)
+  {
+    degree = 2;
+  }
+  for (bool portable : { false, true })
+  {
+    MeshRadiographOptions options;
+    options.portable = portable;
+    for (int columns : { 500, 700, 2, 3 })
+    {
+      View      view = Oblique(false, 64);
+      const int rows = columns > 3 ? 2 : 600;
+      view.spacing = { view.spacing.x() * view.size[0] / columns, view.spacing.y() * view.size[1] / rows };
+      view.size = { { columns, rows } };
+      EXPECT_LT(Difference(Project(mesh, view, options), Walk(mesh, view)), 1e-5) << columns << ' ' << portable;
+    }
+  }
+}
+
 TEST(MeshRadiograph, TheProcessorsNewerInstructionsChangeRoundingOnly)
 {
   auto mesh = Staircase();
