@@ -15,9 +15,9 @@ namespace bone
 /** \class ProjectionModel
  * \brief A density model made ready for any number of radiographs by ProjectMesh: what does not depend on the view.
  *
- * Its tetrahedra of each degree lie in blocks of eight that are near each other: vertices in double, coefficients of
- * what is integrated in single precision, a block's numbers one beside the other. About 200 bytes a tetrahedron of
- * degree 3. */
+ * Its tetrahedra of each degree lie in blocks of eight that are near each other: vertices in double, polynomials of
+ * what is integrated in single precision, expanded about the centroids, a block's numbers one beside the other. About
+ * 200 bytes a tetrahedron of degree 3. */
 class ProjectionModel
 {
 public:
@@ -41,7 +41,7 @@ public:
     std::vector<Vector3>      centres;      ///< of each block's bounding box
     std::vector<Vector3>      halfSizes;    ///< the box's
     std::vector<double>       vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), tetrahedra
-    std::vector<float>        coefficients; ///< of each block: scale * Bernstein coefficient + offset, tetrahedra
+    std::vector<float>        coefficients; ///< of each block: see projection::BlockRun
 
     std::size_t
     Count() const
@@ -49,7 +49,7 @@ public:
       return centres.size();
     }
     std::size_t
-    CoefficientsSize() const; ///< numbers a block
+    CoefficientsSize() const; ///< numbers a block, the largest magnitude with them
     bool
     IsKept() const
     {

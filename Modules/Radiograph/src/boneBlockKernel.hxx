@@ -5,6 +5,7 @@
 // set up at once, their geometry in double precision, their polynomials in single. Small cells then take spans, large
 // ones and those of high degree strips, ill-conditioned ones rows in double precision.
 
+#include "bonePowerKernel.hxx"
 #include "boneSpanKernel.hxx"
 #include "boneStripKernel.hxx"
 
@@ -63,20 +64,20 @@ public:
   {
     Fetch(next);
     SetGeometry(block);
+    SetShape(m_Frames, m_Shape);
     SetPolynomials(block);
     BatchIndex firstColumn, endColumn, firstRow, endRow;
     CutRange(m_Frames.columns, m_Band.firstColumn, m_Band.columns, firstColumn, endColumn);
     CutRange(m_Frames.rows, m_Band.firstRow, m_Band.endRow, firstRow, endRow);
     // Too steep a plane, or a polynomial that grows too large, needs double precision; strips keep more of single
     // precision than spans, as they start anew in each row.
-    constexpr double verySteep = 1e-3, steep = 5e-3;
-    constexpr float  largestGrowth = 64;
-    const BatchIndex exact = FindSteep(m_Frames, verySteep) | ~(m_Polynomials.growth <= largestGrowth);
+    constexpr double verySteep = 2e-3, steep = 5e-3;
+    constexpr float  largestGrowth = 256;
+    const BatchIndex exact = ~(m_Growth <= largestGrowth), precise = FindSteep(m_Frames, verySteep);
     const BatchIndex fine = FindSteep(m_Frames, steep);
     const BatchIndex solid = __builtin_convertvector((m_Frames.halfWidth > 0) & (m_Frames.halfHeight > 0) &
                                                        (m_Frames.halfDepth > 0) & (Absolute(m_Frames.volume) > 0),
                                                      BatchIndex);
-    SetShape(m_Frames, m_Shape);
     // With no front or no back plane it is too flat to be seen.
     const BatchIndex seen =
       solid & (firstColumn < endColumn) & (firstRow < endRow) & (m_Shape.fronts > 0) & (m_Shape.fronts < 4);
@@ -93,6 +94,10 @@ public:
       {
         AddExact(cells[g], g);
       }
+      else if (precise[g] != 0)
+      {
+        AddSteep(g);
+      }
       else if (N <= maximumSpanDegree && fine[g] == 0 && FitsSpans(box))
       {
         AddToSpans(g, box, m_Frames.c0[g], m_Frames.r0[g], m_Band, m_Spans);
@@ -106,7 +111,7 @@ public:
     {
       SetRows(m_Shape, m_Band.stride, m_Spans);
       SetPixels(m_Spans);
-      IntegrateSpans<N>(m_Shape, reinterpret_cast<const float *>(m_Polynomials.a), m_Spans);
+      IntegrateSpans<N>(m_Shape, reinterpret_cast<const float *>(m_Monomials.q), m_Spans);
       AddSpans(m_Spans, m_Band);
     }
   }
@@ -115,7 +120,7 @@ private:
   void
   Fetch(std::size_t block) const
   {
-    constexpr std::size_t vertices = 12 * lanes, coefficients = CoefficientCount(N) * lanes, line = 64;
+    constexpr std::size_t vertices = 12 * lanes, coefficients = (CoefficientCount(N) + 1) * lanes, line = 64;
     for (std::size_t i = 0; i < vertices; i += line / sizeof(double))
     {
       __builtin_prefetch(m_Run.vertices + block * vertices + i);
@@ -130,42 +135,49 @@ private:
   {
     const double * const from = m_Run.vertices + block * 12 * lanes;
     const auto &         m = m_Run.toPixel;
+    const bool           parallel = m_Run.parallel;
+    Octet                sums[3] = {};
     for (int i = 0; i < 4; ++i)
     {
-      Octet x[3];
+      Octet x[3], y[3];
       for (int k = 0; k < 3; ++k)
       {
         x[k] = LoadVector<Octet>(from + (3 * i + k) * lanes) - m_Run.origin[k];
       }
-      const Octet s = m[0][0] * x[0] + m[0][1] * x[1] + m[0][2] * x[2];
-      const Octet c = m[1][0] * x[0] + m[1][1] * x[1] + m[1][2] * x[2];
-      const Octet r = m[2][0] * x[0] + m[2][1] * x[1] + m[2][2] * x[2];
-      const Octet inverse = m_Run.parallel ? Octet{} + 1.0 : 1.0 / s;
-      m_Column[i] = c * inverse;
-      m_Row[i] = r * inverse;
-      m_S[i] = s;
+      for (int k = 0; k < 3; ++k)
+      {
+        y[k] = m[k][0] * x[0] + m[k][1] * x[1] + m[k][2] * x[2];
+        sums[k] += y[k];
+      }
+      const Octet inverse = parallel ? Octet{} + 1.0 : 1.0 / y[0];
+      m_Column[i] = y[1] * inverse;
+      m_Row[i] = y[2] * inverse;
+      m_S[i] = y[0];
     }
-    SetFrames(m_Column, m_Row, m_S, m_Run.parallel, m_Frames);
+    // The centroid.
+    const Octet inverse = parallel ? Octet{} + 0.25 : 1.0 / sums[0];
+    m_Frames.c0 = sums[1] * inverse;
+    m_Frames.r0 = sums[2] * inverse;
+    m_Frames.s0 = 0.25 * sums[0];
+    SetFrames(m_Column, m_Row, m_S, parallel, m_Frames);
   }
   void
   SetPolynomials(std::size_t block)
   {
-    constexpr int count = CoefficientCount(N);
-    Batch         mu[4][4], control[count];
-    for (int k = 0; k < 4; ++k)
+    constexpr int       count = CoefficientCount(N);
+    const float * const from = m_Run.coefficients + block * (count + 1) * lanes;
+    const Batch         halfDepth = Narrow(m_Frames.halfDepth), largest = LoadVector<Batch>(from + count * lanes);
+    Batch               axes[3][3], expansion[count];
+    for (int i = 0; i < 3; ++i)
     {
-      for (int i = 0; i < 4; ++i)
-      {
-        mu[k][i] = Narrow(m_Frames.mu[k][i]);
-      }
+      axes[0][i] = Narrow(m_Frames.mu[1][i + 1] * m_Frames.perWidth);
+      axes[1][i] = Narrow(m_Frames.mu[2][i + 1] * m_Frames.perHeight);
+      axes[2][i] = Narrow(m_Frames.mu[3][i + 1]);
     }
-    const Batch         depth = Narrow(m_Frames.halfDepth);
-    const float * const from = m_Run.coefficients + block * count * lanes;
-    for (int p = 0; p < count; ++p)
-    {
-      control[p] = depth * LoadVector<Batch>(from + p * lanes);
-    }
-    SetDensities<N, Batch>(control, mu, Narrow(m_Frames.kappa), m_Polynomials);
+    __builtin_memcpy(expansion, from, sizeof(expansion));
+    SetMonomials<N>(expansion, axes, halfDepth, m_Monomials);
+    SetGrowth<N>(m_Monomials, Narrow(m_Frames.halfWidth), Narrow(m_Frames.halfHeight), halfDepth * largest, m_Growth);
+    m_HasRays = false;
   }
   /** One cell on its own, in double precision. */
   void
@@ -197,13 +209,34 @@ private:
     AddInPrecision<double, N>(frame, RowPolynomial<double, N>(polynomials, 0), m_Band);
   }
   void
+  SetRays()
+  {
+    if (!m_HasRays)
+    {
+      SetAlongRays<N, Batch>(m_Monomials, m_Shape.kappa, m_Polynomials);
+      m_HasRays = true;
+    }
+  }
+  /** The planes in double precision. */
+  void
+  AddSteep(int g)
+  {
+    Frame frame;
+    if (!PlaceFrame(m_Frames, g, m_Band, frame) || !SetPlanes(m_Frames, g, frame))
+    {
+      return;
+    }
+    SetRays();
+    frame.halfWidth = frame.halfHeight = 1; // the polynomials count pixels
+    AddInPrecision<double, N>(frame, RowPolynomial<double, N>(m_Polynomials, g), m_Band);
+  }
+  void
   AddLarge(int g, const PixelBox & box)
   {
+    SetRays();
     StripCell cell;
     cell.c0 = m_Frames.c0[g];
     cell.r0 = m_Frames.r0[g];
-    cell.perWidth = m_Shape.perWidth[g];
-    cell.perHeight = m_Shape.perHeight[g];
     cell.kappa = m_Shape.kappa[g];
     cell.fronts = m_Shape.fronts[g];
     int front = 0, back = 3;
@@ -227,7 +260,10 @@ private:
   BlockShape       m_Shape;
   SpanList         m_Spans;
 
-  RayPolynomials<N, Batch> m_Polynomials;
+  Monomials<N, Batch>      m_Monomials; ///< times half the depth; X and Y count pixels at the centroid
+  Batch                    m_Growth;    ///< how much rounding may
+  bool                     m_HasRays{ false };
+  RayPolynomials<N, Batch> m_Polynomials; ///< the same along rays, where a cell needs it
 };
 
 template <int N>

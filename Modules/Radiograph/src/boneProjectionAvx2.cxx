@@ -30,7 +30,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx2Kernels = { avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinCells };
+const Kernels avx2Kernels = { avx2::Expand, avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinCells };
 } // namespace projection
 } // namespace bone
 

@@ -28,7 +28,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx512Kernels = { avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinCells };
+const Kernels avx512Kernels = { avx512::Expand, avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinCells };
 } // namespace projection
 } // namespace bone
 

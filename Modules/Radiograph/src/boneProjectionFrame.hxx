@@ -213,7 +213,7 @@ Load(const double (&from)[4][groupSize], Group (&to)[4])
 
 template <typename TLanes>
 inline void
-SetRange(const TLanes (&x)[4], TLanes (&range)[2], TLanes & centre, TLanes & half)
+SetRange(const TLanes (&x)[4], TLanes (&range)[2])
 {
   range[0] = range[1] = x[0];
   for (int i = 1; i < 4; ++i)
@@ -221,8 +221,24 @@ SetRange(const TLanes (&x)[4], TLanes (&range)[2], TLanes & centre, TLanes & hal
     range[0] = x[i] < range[0] ? x[i] : range[0];
     range[1] = x[i] > range[1] ? x[i] : range[1];
   }
-  centre = 0.5 * (range[0] + range[1]);
-  half = 0.5 * (range[1] - range[0]);
+}
+
+template <typename TLanes>
+inline void
+SetMiddle(const TLanes (&x)[4], TLanes & middle)
+{
+  TLanes range[2];
+  SetRange(x, range);
+  middle = 0.5 * (range[0] + range[1]);
+}
+
+/** How far a range goes from a place in it. */
+template <typename TLanes>
+inline TLanes
+Extent(const TLanes (&range)[2], const TLanes & from)
+{
+  const TLanes below = from - range[0], above = range[1] - from;
+  return below > above ? below : above;
 }
 
 /** The barycentric coordinates in the frame, from the vertices in it. */
@@ -266,7 +282,7 @@ SetBarycentric(const TLanes (&p)[4][3], Frames<TLanes> & frame)
   }
 }
 
-/** Everything of Frames, from the vertices. */
+/** Everything of Frames, from the vertices and the origin (c0, r0, s0), which is set already. */
 template <typename TLanes>
 inline void
 SetFrames(const TLanes (&column)[4],
@@ -275,10 +291,13 @@ SetFrames(const TLanes (&column)[4],
           bool             parallel,
           Frames<TLanes> & frame)
 {
-  SetRange(column, frame.columns, frame.c0, frame.halfWidth);
-  SetRange(row, frame.rows, frame.r0, frame.halfHeight);
   TLanes range[2];
-  SetRange(s, range, frame.s0, frame.halfDepth);
+  SetRange(column, frame.columns);
+  SetRange(row, frame.rows);
+  SetRange(s, range);
+  frame.halfWidth = Extent(frame.columns, frame.c0);
+  frame.halfHeight = Extent(frame.rows, frame.r0);
+  frame.halfDepth = Extent(range, frame.s0);
   const TLanes none{}, perWidth = 1.0 / frame.halfWidth, perHeight = 1.0 / frame.halfHeight;
   frame.perWidth = perWidth;
   frame.perHeight = perHeight;
@@ -311,12 +330,16 @@ SetGroupFrame(const CellGroup & group, GroupFrame & frame)
   Load(group.column, column);
   Load(group.row, row);
   Load(group.s, s);
+  SetMiddle(column, frame.c0);
+  SetMiddle(row, frame.r0);
+  SetMiddle(s, frame.s0);
   SetFrames(column, row, s, group.parallel, frame);
 }
 
 /** Pixels of one cell of a group; false where it meets none of the band or is flat. */
+template <typename TLanes>
 inline bool
-PlaceFrame(const GroupFrame & group, int member, const Band & band, Frame & frame)
+PlaceFrame(const Frames<TLanes> & group, int member, const Band & band, Frame & frame)
 {
   frame.c0 = group.c0[member];
   frame.r0 = group.r0[member];
@@ -355,8 +378,9 @@ AddLimit(Frame & frame, double constant, double perColumn, double perRow, double
 }
 
 /** Depths of the face planes and column limits; false where there is nothing to be seen. */
+template <typename TLanes>
 inline bool
-SetPlanes(const GroupFrame & group, int member, Frame & frame)
+SetPlanes(const Frames<TLanes> & group, int member, Frame & frame)
 {
   // Seen more nearly edge-on than that (in units of the cell's size): not a matter of depth but of left and right.
   constexpr double edgeOn = 1e-10;

@@ -25,12 +25,13 @@ constexpr int groupSize = 4;
 /** Blocks of eight tetrahedra of one degree, wholly between source and detector, and how they are seen. */
 struct BlockRun
 {
-  const std::int32_t * blocks;        ///< which
-  std::size_t          count;         ///< of these
-  const double *       vertices;      ///< of each block: 4 vertices, 3 coordinates (mm), eight tetrahedra
-  const float *        coefficients;  ///< of each block: Bernstein coefficients of what is integrated, eight tetrahedra
-  const std::int32_t * cells;         ///< of each block: eight; -1 after the last of all
-  const double *       density;       ///< coefficients as they are given, a row a tetrahedron
+  const std::int32_t * blocks;       ///< which
+  std::size_t          count;        ///< of these
+  const double *       vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), eight tetrahedra
+  const float *        coefficients; ///< of each block: expansions of what is integrated, see bonePowerKernel.hxx, then
+                                     ///< the largest magnitude of a Bernstein coefficient, eight tetrahedra
+  const std::int32_t * cells;        ///< of each block: eight; -1 after the last of all
+  const double *       density;      ///< coefficients as they are given, a row a tetrahedron
   std::size_t          densityStride; ///< from row to row
   int                  degree;
   double               scale; ///< scale * density + offset is integrated
@@ -98,6 +99,8 @@ struct Adjoint
 /** Those of a group take 1..groupSize tetrahedra of one degree and fill up what is beyond `count`. */
 struct Kernels
 {
+  /** Replaces a block's Bernstein coefficients by their expansions, see bonePowerKernel.hxx. */
+  void (*expand)(int degree, float * coefficients);
   /** Adds the tetrahedra's integrals to the band, in order. */
   void (*add)(const BlockRun & run, const Band & band);
   /** The same for a group, with derivatives; fills the group up. */

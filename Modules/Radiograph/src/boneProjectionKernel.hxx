@@ -152,13 +152,11 @@ Magnify(TLanes kappa, int times, TLanes (&inZ)[N + 1])
   });
 }
 
-/** The densities of some cells: A[b][k * (N + 1) + a], and how much rounding may grow: the sum of the coefficients'
- * magnitudes over the largest magnitude of a control value. */
+/** The densities of some cells: A[b][k * (N + 1) + a]. */
 template <int N, typename TLanes>
 struct RayPolynomials
 {
   TLanes a[N + 1][(N + 1) * (N + 1)];
-  TLanes growth;
 };
 
 /** The same, ready to be evaluated for all (k, a) of a row at once. */
@@ -416,23 +414,11 @@ LoadControl(const double * const (&coefficients)[groupSize],
   }
 }
 
-/** From control values, which are density times h, to polynomials along the rays of each cell's frame. */
+/** From monomials in X, Y, z, which are density times h, to polynomials along the rays of each cell's frame. */
 template <int N, typename TLanes>
 void
-SetDensities(const TLanes (&control)[CoefficientCount(N)],
-             const TLanes (&mu)[4][4],
-             TLanes                      kappa,
-             RayPolynomials<N, TLanes> & densities)
+SetAlongRays(const Monomials<N, TLanes> & monomials, TLanes kappa, RayPolynomials<N, TLanes> & densities)
 {
-  TLanes largest{};
-  for (const TLanes & value : control)
-  {
-    const TLanes magnitude = Absolute(value);
-    largest = magnitude > largest ? magnitude : largest;
-  }
-  Monomials<N, TLanes> monomials;
-  SetMonomials<N, TLanes>(control, mu, monomials);
-  TLanes sum{};
   RepeatDegrees<N + 1>([&](int b) __attribute__((always_inline)) {
     RepeatDegrees<N + 1>([&](int a) __attribute__((always_inline)) {
       TLanes inZ[N + 1] = {};
@@ -441,13 +427,22 @@ SetDensities(const TLanes (&control)[CoefficientCount(N)],
         SetInZ<N>(monomials, a, b, inZ);
         Magnify<N>(kappa, a + b, inZ);
       }
-      RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) {
-        densities.a[b][k * (N + 1) + a] = inZ[k];
-        sum += Absolute(inZ[k]);
-      });
+      RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) { densities.a[b][k * (N + 1) + a] = inZ[k]; });
     });
   });
-  densities.growth = largest > 0 ? sum / largest : largest;
+}
+
+/** The same from Bernstein coefficients. */
+template <int N, typename TLanes>
+void
+SetDensities(const TLanes (&control)[CoefficientCount(N)],
+             const TLanes (&mu)[4][4],
+             TLanes                      kappa,
+             RayPolynomials<N, TLanes> & densities)
+{
+  Monomials<N, TLanes> monomials;
+  SetMonomials<N, TLanes>(control, mu, monomials);
+  SetAlongRays<N, TLanes>(monomials, kappa, densities);
 }
 
 template <typename TReal, int N>

@@ -6,6 +6,7 @@
 #include "boneProjectedCells.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -68,7 +69,7 @@ SortBySpace(const std::vector<Vector3> & points, const MeshArrays & cells, const
 std::size_t
 ProjectionModel::Blocks::CoefficientsSize() const
 {
-  return static_cast<std::size_t>(BernsteinCount(degree)) * size;
+  return static_cast<std::size_t>(BernsteinCount(degree) + 1) * size;
 }
 
 ProjectionModel::ProjectionModel(const std::vector<Vector3> &  points,
@@ -165,10 +166,15 @@ ProjectionModel::Fill(const Blocks & blocks, std::size_t block, double * vertice
       }
     }
     const double * const from = density.Coefficients(t);
+    float                largest = 0.0f;
     for (std::size_t p = 0; p < count; ++p)
     {
-      coefficients[p * Blocks::size + g] = static_cast<float>(m_Options.scale * from[p] + m_Options.offset);
+      const auto value = static_cast<float>(m_Options.scale * from[p] + m_Options.offset);
+      coefficients[p * Blocks::size + g] = value;
+      largest = std::max(largest, std::abs(value));
     }
+    coefficients[count * Blocks::size + g] = largest;
   }
+  projection::SelectKernels(m_Options.portable).expand(blocks.degree, coefficients);
 }
 } // namespace bone

@@ -18,7 +18,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels portableKernels = { portable::AddBlocks, portable::DeriveCells, portable::AdjoinCells };
+const Kernels portableKernels = { portable::Expand, portable::AddBlocks, portable::DeriveCells, portable::AdjoinCells };
 
 const Kernels &
 SelectKernels(bool portable)

@@ -317,8 +317,16 @@ public:
     {
       return;
     }
-    Lanes value = none;
-    RepeatLow<N, count>([&](int p) __attribute__((always_inline)) { value += m_Density[p * groupSize] * sums[p]; });
+    // Several sums: one addition after another would be waited for.
+    constexpr int parts = count < 4 ? count : 4;
+    Lanes         part[parts] = {};
+    RepeatLow<N, count>([&](int p)
+                          __attribute__((always_inline)) { part[p % parts] += m_Density[p * groupSize] * sums[p]; });
+    Lanes value = part[0];
+    for (int i = 1; i < parts; ++i)
+    {
+      value += part[i];
+    }
     const Lanes mean = value / (hit ? length : none + 1);
     Lanes       inX, inY, outX, outY;
     {

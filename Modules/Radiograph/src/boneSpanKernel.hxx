@@ -38,7 +38,22 @@ struct BlockShape
   Batch      depth[4][3];                     ///< of the face planes, fronts first: at the centre, per column, per row
   BatchIndex fronts;                          ///< how many of them are
   Batch      low[limits][2], high[limits][2]; ///< column limits less c0: at r0, per row; far away where there is none
-  Batch      perWidth, perHeight, kappa;
+  Batch      noFront[2];                      ///< 0 where the second, the third plane is a front, else far beyond
+  Batch      noBack[2];                       ///< the same of backs, far before
+  Batch      kappa;
+
+  /** What has kappa^2 does not tell. */
+  bool
+  IsFar() const
+  {
+    constexpr float far = 1.0f / 128;
+    float           largest = 0;
+    for (int g = 0; g < lanes; ++g)
+    {
+      largest = kappa[g] > largest ? kappa[g] : largest;
+    }
+    return largest <= far;
+  }
 };
 
 /** Puts fronts before backs. */
@@ -80,8 +95,6 @@ SetLimit(const Batch (&front)[3], const Batch (&back)[3], int limit, BlockShape 
 inline void
 SetShape(const Frames<Octet> & frames, BlockShape & shape)
 {
-  shape.perWidth = Narrow(frames.perWidth);
-  shape.perHeight = Narrow(frames.perHeight);
   shape.kappa = Narrow(frames.kappa);
   BatchIndex front[4];
   shape.fronts = BatchIndex{};
@@ -95,6 +108,12 @@ SetShape(const Frames<Octet> & frames, BlockShape & shape)
     shape.fronts -= front[i];
   }
   SortPlanes(shape, front);
+  const Batch none{}, beyond = none + 1e30f;
+  for (int i = 0; i < 2; ++i)
+  {
+    shape.noFront[i] = front[i + 1] != 0 ? none : beyond;
+    shape.noBack[i] = front[i + 1] != 0 ? -beyond : none;
+  }
   const auto &     depth = shape.depth;
   const BatchIndex one = shape.fronts == 1, three = shape.fronts == 3;
   Batch            firstFront[3], firstBack[3], secondFront[3], secondBack[3], lastFront[3], lastBack[3];
@@ -128,39 +147,43 @@ TileLanes()
 struct SpanPiece
 {
   int   cell;        ///< in the block
-  int   place;       ///< in the list of cells
   float column, row; ///< of its first pixel, less c0 and r0
   int   columns, rows;
   int   offset; ///< of its first pixel in the box: row * 256 + column
   int   out;    ///< from the band's first
 };
 
-/** Pixels of a block's cells. */
+/** Pixels of a block's cells; each cell's begin at a whole tile. */
 struct SpanList
 {
-  static constexpr int pixelCapacity = lanes * (maximumSpanBox + tileLanes);
+  static constexpr int pixelCapacity = lanes * (maximumSpanBox + 2 * tileLanes);
   static constexpr int pieceCapacity = lanes * 32; ///< a box that FitsSpans has at most 32 of 8 x 8
   static constexpr int rowCapacity = pieceCapacity * tileLanes;
+  static constexpr int tilesOfCell = 64; ///< at least as many as a cell that FitsSpans has
 
+  Tile           x[pixelCapacity / tileLanes], y[pixelCapacity / tileLanes]; ///< of the chord's middle, see MeanAlong
+  Tile           z[pixelCapacity / tileLanes];
+  Tile           length[pixelCapacity / tileLanes]; ///< of the chord in z
+  float          value[pixelCapacity];              ///< the integral
+  unsigned short place[pixelCapacity];              ///< row * 256 + column in the cell's box
   SpanPiece      piece[pieceCapacity];
   int            pieces;
   unsigned short start[rowCapacity];      ///< of each piece's rows: the first pixel in the box
   int            pieceCount[rowCapacity]; ///< and the number of pixels
   int            count[rowCapacity];      ///< the number of pixels without the rows beyond a piece
   int            out[rowCapacity];        ///< where they begin, from the band's first
+  int            from[rowCapacity];       ///< where they begin in the list
+  int            longer[rowCapacity + 1]; ///< which have more pixels than lanes
   int            rows;
-  unsigned short place[pixelCapacity]; ///< row * 256 + column in the cell's box
-  float          value[pixelCapacity];
-  int            cell[lanes];
-  float          column[lanes];  ///< of their boxes' first pixels, less c0
-  float          row[lanes];     ///< less r0
-  int            end[lanes + 1]; ///< of each one's pixels
-  int            cells;
+  unsigned char  cellOf[pixelCapacity / tileLanes + tilesOfCell]; ///< of each tile
+  int            pixels;                                          ///< of all, with those that fill up tiles
+  float          column[lanes];                                   ///< of the cells' boxes' first pixels, less c0
+  float          row[lanes];                                      ///< less r0
 
   void
   Clear()
   {
-    pieces = rows = cells = end[0] = 0;
+    pieces = rows = pixels = 0;
   }
 };
 
@@ -177,7 +200,6 @@ AddToSpans(int g, const PixelBox & box, double c0, double r0, const Band & band,
     for (int r = 0; r < rows; r += tileLanes)
     {
       list.piece[list.pieces++] = { g,
-                                    list.cells,
                                     column + c,
                                     row + r,
                                     columns - c < tileLanes ? columns - c : tileLanes,
@@ -186,10 +208,8 @@ AddToSpans(int g, const PixelBox & box, double c0, double r0, const Band & band,
                                     out + r * stride + c };
     }
   }
-  list.cell[list.cells] = g;
-  list.column[list.cells] = column;
-  list.row[list.cells] = row;
-  ++list.cells;
+  list.column[g] = column;
+  list.row[g] = row;
 }
 
 /** Finds the rows of all pieces. */
@@ -235,127 +255,176 @@ inline __attribute__((always_inline)) void
 SetPixels(SpanList & list)
 {
   const TilePlaces places = __builtin_convertvector(TileLanes(), TilePlaces);
-  unsigned short * to = list.place;
+  int              to = 0, row = 0, cell = -1;
   for (int p = 0; p < list.pieces; ++p)
   {
+    const SpanPiece &            piece = list.piece[p];
     const unsigned short * const start = list.start + p * tileLanes;
     const int * const            count = list.pieceCount + p * tileLanes;
+    if (piece.cell != cell)
+    {
+      cell = piece.cell;
+      to = (to + tileLanes - 1) & ~(tileLanes - 1);
+      __builtin_memset(list.cellOf + to / tileLanes, cell, SpanList::tilesOfCell);
+    }
     for (int j = 0; j < tileLanes; ++j)
     {
-      StoreVector(to, places + start[j]);
+      StoreVector(list.place + to, places + start[j]);
+      list.from[row + j] = to;
       to += count[j];
     }
-    list.end[list.piece[p].place + 1] = static_cast<int>(to - list.place);
+    row += piece.rows;
+  }
+  list.pixels = to;
+}
+
+/** Sets the chords of all pixels. Whatever planes are fronts: a branch would be guessed wrong for many cells. */
+inline void
+SetChords(const BlockShape & shape, SpanList & list)
+{
+  const Tile zero{};
+  for (int i = 0; i < list.pixels; i += tileLanes)
+  {
+    const int           tile = i / tileLanes, g = list.cellOf[tile];
+    const float * const plane = reinterpret_cast<const float *>(shape.depth) + g;
+    const TileIndex     place = __builtin_convertvector(LoadVector<TilePlaces>(list.place + i), TileIndex);
+    const Tile          c = __builtin_convertvector(place & 255, Tile) + list.column[g];
+    const Tile          r = __builtin_convertvector(place >> 8, Tile) + list.row[g];
+    const auto          at = [&](int p) __attribute__((always_inline))
+    {
+      const float * const of = plane + 3 * p * lanes;
+      return of[0] + of[lanes] * c + of[2 * lanes] * r;
+    };
+    const Tile second = at(1), third = at(2);
+    Tile       entry = at(0), exit = at(3);
+    const Tile secondFront = second + shape.noFront[0][g], thirdFront = third + shape.noFront[1][g];
+    const Tile secondBack = second + shape.noBack[0][g], thirdBack = third + shape.noBack[1][g];
+    entry = secondFront < entry ? secondFront : entry;
+    exit = secondBack > exit ? secondBack : exit;
+    entry = thirdFront < entry ? thirdFront : entry;
+    exit = thirdBack > exit ? thirdBack : exit;
+    const float kappa = shape.kappa[g];
+    const Chord chord(entry, exit, kappa);
+    const Tile  magnification = 1 + kappa * chord.middle;
+    list.x[tile] = magnification * c;
+    list.y[tile] = magnification * r;
+    list.z[tile] = chord.middle;
+    list.length[tile] = entry > exit ? chord.length : zero;
   }
 }
 
-/** The polynomials in z at pixels (xi, eta), from a lane of RayPolynomials. */
-template <int N>
-inline __attribute__((always_inline)) void
-SetPixelPolynomials(const float * densities, const Tile & xi, const Tile & eta, Tile (&inZ)[N + 1])
+/** The mean of a polynomial in X, Y and z along a chord, which begins and ends at z -+ length / 2 and has its middle at
+ * (x, y, z). With its value p and its second derivative p'' along the ray there it is p + length^2 / 24 p'' up to
+ * degree 3; the derivative along the ray is d/dz + kappa / (1 + kappa z) (X d/dX + Y d/dY). Where `TFar`, what has
+ * kappa^2 is left out of p''. `q` points to a lane of Monomials. */
+template <int N, bool TFar>
+inline __attribute__((always_inline)) Tile
+MeanAlong(const float * q, const Tile & x, const Tile & y, const Tile & z, const Tile & length, float kappa)
 {
-  const Tile zero{};
-  RepeatDegrees<N + 1>([&](int k) __attribute__((always_inline)) {
-    RepeatDegrees<N + 1>([&](int fromLast) __attribute__((always_inline)) {
-      const int           b = N - fromLast;
-      const float * const from = densities + (b * (N + 1) * (N + 1) + k * (N + 1)) * lanes;
-      Tile                inXi{};
-      RepeatDegrees<N + 1>([&](int i) __attribute__((always_inline)) {
-        const int a = N - i;
-        if (a + b <= N)
-        {
-          inXi = a + b == N ? from[a * lanes] - zero : inXi * xi + from[a * lanes];
-        }
-      });
-      inZ[k] = b == N ? inXi : inZ[k] * eta + inXi;
-    });
-  });
+  static_assert(N <= 3, "the remainder is none up to degree 3");
+  const auto of = [q](int a, int b, int k) __attribute__((always_inline))
+  {
+    return q[((a * (N + 1) + b) * (N + 1) + k) * lanes];
+  };
+  if constexpr (N == 0)
+  {
+    return Tile{} + of(0, 0, 0);
+  }
+  else if constexpr (N == 1)
+  {
+    return of(0, 0, 0) + of(1, 0, 0) * x + of(0, 1, 0) * y + of(0, 0, 1) * z;
+  }
+  else
+  {
+    // Sums of the terms of z^k that are homogeneous in X and Y.
+    const Tile first = of(1, 0, 1) * x + of(0, 1, 1) * y;
+    const Tile perSecond = (length * length) * (1.0f / 12);
+    const Tile slope = TFar ? Tile{} + kappa : kappa / (1 + kappa * z);
+    if constexpr (N == 2)
+    {
+      const Tile value =
+        of(0, 0, 0) + x * (of(1, 0, 0) + of(2, 0, 0) * x) + y * (of(0, 1, 0) + of(1, 1, 0) * x + of(0, 2, 0) * y);
+      Tile half = of(0, 0, 2) + slope * first; // of p''
+      if constexpr (!TFar)
+      {
+        half += slope * slope * (x * (of(2, 0, 0) * x + of(1, 1, 0) * y) + y * (of(0, 2, 0) * y));
+      }
+      return value + z * (of(0, 0, 1) + first + z * of(0, 0, 2)) + perSecond * half;
+    }
+    else
+    {
+      const Tile value =
+        of(0, 0, 0) + x * (of(1, 0, 0) + x * (of(2, 0, 0) + of(3, 0, 0) * x)) +
+        y * (of(0, 1, 0) + x * (of(1, 1, 0) + of(2, 1, 0) * x) + y * (of(0, 2, 0) + of(1, 2, 0) * x + of(0, 3, 0) * y));
+      const Tile second = x * (of(2, 0, 1) * x + of(1, 1, 1) * y) + y * (of(0, 2, 1) * y);
+      const Tile firstOfSquare = of(1, 0, 2) * x + of(0, 1, 2) * y, square = of(0, 0, 2) + firstOfSquare;
+      const Tile third = of(0, 0, 3) * z;
+      Tile       half = square + 3 * third + slope * (first + 2 * (second + z * firstOfSquare)); // of p''
+      if constexpr (!TFar)
+      {
+        half += slope * slope *
+                (x * x * (of(2, 0, 0) + 3 * (of(3, 0, 0) * x + of(2, 1, 0) * y)) + of(1, 1, 0) * (x * y) +
+                 y * y * (of(0, 2, 0) + 3 * (of(1, 2, 0) * x + of(0, 3, 0) * y)) + z * second);
+      }
+      return value + z * (of(0, 0, 1) + first + second + z * (square + third)) + perSecond * half;
+    }
+  }
 }
 
-/** The integrals along the rays of the pixels of the list's cell `k`, and of what follows up to a whole tile. */
-template <int N, int TFronts>
+/** The integrals along all chords. */
+template <int N, bool TFar>
 inline void
-IntegrateCell(const BlockShape & shape, int k, const float * densities, SpanList & list)
+IntegrateChords(const BlockShape & shape, const float * monomials, SpanList & list)
 {
-  const int           g = list.cell[k], end = list.end[k + 1];
-  const float * const planes = reinterpret_cast<const float *>(shape.depth) + g;
-  const auto          at = [planes](int i, const Tile & c, const Tile & r) __attribute__((always_inline))
-  {
-    const float * const plane = planes + 3 * i * lanes;
-    return plane[0] + plane[lanes] * c + plane[2 * lanes] * r;
-  };
-  const Tile  zero{};
-  const float perWidth = shape.perWidth[g], perHeight = shape.perHeight[g];
-  const float column = list.column[k], row = list.row[k];
-  for (int i = list.end[k]; i < end; i += tileLanes)
+  for (int i = 0; i < list.pixels; i += tileLanes)
   {
     // The cell's numbers are broadcast from memory as they are needed: kept, they would not fit the registers.
     __asm__ volatile("" : : : "memory");
-    const TileIndex place = __builtin_convertvector(LoadVector<TilePlaces>(list.place + i), TileIndex);
-    const Tile      c = __builtin_convertvector(place & 255, Tile) + column;
-    const Tile      r = __builtin_convertvector(place >> 8, Tile) + row;
-    Tile            entry = at(0, c, r);
-    for (int f = 1; f < TFronts; ++f)
-    {
-      const Tile other = at(f, c, r);
-      entry = other < entry ? other : entry;
-    }
-    Tile exit = at(TFronts, c, r);
-    for (int b = TFronts + 1; b < 4; ++b)
-    {
-      const Tile other = at(b, c, r);
-      exit = other > exit ? other : exit;
-    }
-    const Chord chord(entry, exit, shape.kappa[g]);
-    Tile        inZ[N + 1];
-    SetPixelPolynomials<N>(densities, c * perWidth, r * perHeight, inZ);
-    const Tile value = chord.length * Mean<N>(inZ, chord.middle, chord.length);
-    StoreVector(list.value + i, entry > exit ? value : zero);
+    const int  tile = i / tileLanes, g = list.cellOf[tile];
+    const Tile length = list.length[tile];
+    const Tile mean =
+      MeanAlong<N, TFar>(monomials + g, list.x[tile], list.y[tile], list.z[tile], length, shape.kappa[g]);
+    StoreVector(list.value + i, length * mean);
   }
 }
 
-/** The integrals along the rays of all that is listed. */
+/** The integrals along the rays of all that is listed. First all chords: their divisions take long, and a processor
+ * that waits for one does not see far enough ahead to do much else. */
 template <int N>
 inline void
-IntegrateSpans(const BlockShape & shape, const float * densities, SpanList & list)
+IntegrateSpans(const BlockShape & shape, const float * monomials, SpanList & list)
 {
-  for (int k = 0; k < list.cells; ++k)
+  SetChords(shape, list);
+  if (N < 2 || shape.IsFar())
   {
-    switch (shape.fronts[list.cell[k]])
-    {
-      case 1:
-        IntegrateCell<N, 1>(shape, k, densities + list.cell[k], list);
-        break;
-      case 2:
-        IntegrateCell<N, 2>(shape, k, densities + list.cell[k], list);
-        break;
-      case 3:
-        IntegrateCell<N, 3>(shape, k, densities + list.cell[k], list);
-        break;
-      default:
-        break; // there is a front and a back
-    }
+    IntegrateChords<N, true>(shape, monomials, list);
+  }
+  else
+  {
+    IntegrateChords<N, false>(shape, monomials, list);
   }
 }
 
-/** Adds the list to the image. By eight: most rows are shorter, and longer writes cross more borders of cache lines. */
+/** Adds the list to the image. By eight: most rows are shorter, and longer writes cross more borders of cache lines.
+ * What is longer comes after, again without branches that would be guessed wrong. */
 inline __attribute__((always_inline)) void
-AddSpans(const SpanList & list, const Band & band)
+AddSpans(SpanList & list, const Band & band)
 {
   const Batch      zero{};
   const BatchIndex index = { 0, 1, 2, 3, 4, 5, 6, 7 };
-  const int        rows = list.rows;
-  const float *    value = list.value;
-  for (int row = 0; row < rows; ++row)
+  int              longer = 0;
+  for (int row = 0; row < list.rows; ++row)
   {
-    float * const out = band.data + list.out[row];
-    const int     count = list.count[row];
-    Accumulate(out, index < count ? LoadVector<Batch>(value) : zero);
-    if (count > lanes)
-    {
-      Accumulate(out + lanes, index + lanes < count ? LoadVector<Batch>(value + lanes) : zero);
-    }
-    value += count;
+    const int count = list.count[row];
+    Accumulate(band.data + list.out[row], index < count ? LoadVector<Batch>(list.value + list.from[row]) : zero);
+    list.longer[longer] = row;
+    longer += count > lanes ? 1 : 0;
+  }
+  for (int i = 0; i < longer; ++i)
+  {
+    const int row = list.longer[i], count = list.count[row] - lanes;
+    Accumulate(band.data + list.out[row] + lanes,
+               index < count ? LoadVector<Batch>(list.value + list.from[row] + lanes) : zero);
   }
 }
 } // namespace BONE_PROJECTION_NAMESPACE

@@ -19,7 +19,6 @@ namespace BONE_PROJECTION_NAMESPACE
 struct StripCell
 {
   double c0, r0;
-  float  perWidth, perHeight; ///< 1 / half extent
   float  kappa;
   Group  depth[3];          ///< of its planes, as in Frames, fronts first
   int    fronts;            ///< how many of the planes are
@@ -62,7 +61,7 @@ AccumulateTile(float * out, std::ptrdiff_t stride, const Tile & value)
 }
 
 /** Rows [firstRow, endRow) of the eight columns from `column`; rows of the last tile beyond are written, too.
- * `densities` points to the cell's lane of the coefficients, which are `lanes` apart. */
+ * `densities` points to the cell's lane of the coefficients, which are `lanes` apart; xi and eta count pixels. */
 template <int N, int TFronts>
 inline void
 AddStrip(const StripCell & cell,
@@ -76,7 +75,7 @@ AddStrip(const StripCell & cell,
   typedef float Planes __attribute__((vector_size(4 * sizeof(float))));
   const Tile    index = Columns(), rows = Rows(), zero{};
   const double  dc = column - cell.c0, dr = firstRow - cell.r0;
-  const Tile    xi = (index + static_cast<float>(dc)) * cell.perWidth;
+  const Tile    xi = index + static_cast<float>(dc);
   // Density of the lane's column: coefficients of eta^b z^k.
   Tile inEta[N + 1][N + 1];
   for (int k = 0; k <= N; ++k)
@@ -104,8 +103,7 @@ AddStrip(const StripCell & cell,
   }
   Group       start = cell.depth[0] + cell.depth[1] * dc + cell.depth[2] * dr;
   const Group step = tileRows * cell.depth[2];
-  Tile        eta = (rows + static_cast<float>(dr)) * cell.perHeight;
-  const float etaStep = tileRows * cell.perHeight;
+  Tile        eta = rows + static_cast<float>(dr);
   for (int row = firstRow; row < endRow; row += tileRows)
   {
     float        at[4];
@@ -139,7 +137,7 @@ AddStrip(const StripCell & cell,
     AccumulateTile(out, stride, entry > exit ? value : zero);
     out += tileRows * stride;
     start += step;
-    eta += etaStep;
+    eta += tileRows;
   }
 }
 

@@ -535,6 +535,25 @@ TEST(MeshRadiograph, CellsOfAnySizeOnTheDetectorKeepTheirAccuracy)
   }
 }
 
+TEST(MeshRadiograph, CellsAtAnyDistanceFromTheSourceKeepTheirAccuracy)
+{
+  // Rays through a cell diverge by its depth over its distance: from what tells in the integral to what is left out.
+  auto mesh = Box({ { 1, 1, 1 } }, 0);
+  for (unsigned int seed = 1; seed <= 10; ++seed)
+  {
+    test::SetRandom(mesh, 3, seed);
+    for (double distance : { 100, 400, 1600, 2800, 3600, 6000 })
+    {
+      View view = XRayGeometry::Framing(
+        lower, upper, Vector3(0.4, 1, 0.2).normalized(), Vector3(0.1, 0.2, 1), distance, distance + 100, 15);
+      const ProjectionModel model(mesh.points, mesh, {}, Sequential().prepare);
+      std::vector<float>    image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
+      ProjectMesh(model, { view }, Sequential(), { image.data() });
+      EXPECT_LT(Difference(image, Walk(mesh, view)), 3e-6) << distance << ' ' << seed;
+    }
+  }
+}
+
 TEST(MeshRadiograph, CellsOfOneRowAndManyColumnsOrTheReverseKeepTheirAccuracy)
 {
   auto mesh = Box({ { 2, 2, 2 } }, 0);
