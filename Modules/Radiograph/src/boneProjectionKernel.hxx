@@ -11,6 +11,7 @@
 //   depth      v = -z / (1 + kappa z), in which each face plane is an affine function of (xi, eta)
 //   density    sum of q_abk X^a Y^b z^k = sum over b, k, a of eta^b z^k xi^a A[b][k][a]
 // The integral from z_in to z_out is h (z_out - z_in) times the mean of the polynomial in z.
+// Blocks have their centroid as origin and count pixels in X and Y (wc = wr = 1); groups have the middle of their box.
 
 #include "boneProjectionFrame.hxx"
 
