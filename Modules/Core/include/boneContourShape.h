@@ -34,17 +34,44 @@ public:
   std::optional<Value>
   Evaluate(int level, const Vector3 & x) const;
 
+  /** A point of the surface of a body where it is known: on a contour. */
+  struct Sample
+  {
+    Vector3 place;
+    Vector3 outward; ///< unit normal of the contour, in its plane
+    double  weight;  ///< mm^2, length of contour times the distance of slices that it stands for
+  };
+
+  /** Points on the contours of a body of level r on all slices, evenly along each: at most `spacing` mm apart, and at
+   * least three. */
+  std::vector<Sample>
+  SampleContours(int level, double spacing) const;
+
+  /** Length of all contours of a body of level r, mm. */
+  double
+  GetContourLength(int level) const;
+
+  /** The largest level that a slice has; 0 for none. */
+  int
+  GetLevels() const;
+
 private:
   /** The body of one level on one slice. */
   struct Section
   {
     std::vector<std::vector<Vector2>> polygons;
-    TriangleTree                      tree; ///< of its segments, in the plane z = 0
+    std::vector<double>               sides; ///< of each polygon: 1 where the body lies on its left, else -1
+    TriangleTree                      tree;  ///< of its segments, in the plane z = 0
 
     /** Distance, and its gradient in the plane. */
     std::pair<double, Vector2>
     Evaluate(const Vector2 & q) const;
   };
+
+  /** Calls visit(slice, section) for each slice that has the level. */
+  template <typename TVisit>
+  void
+  ForEachSection(int level, TVisit visit) const;
 
   ContourStack::ConstPointer        m_Frame; ///< of the stack, without its slices
   std::vector<double>               m_Heights;

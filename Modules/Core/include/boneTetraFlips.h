@@ -54,11 +54,12 @@ struct SurfaceFlip
  * their ring.
  *
  * A side of one cell has no new cells: it goes over to the other side, or is peeled off the body. `outcome` is Done
- * where all new cells are positive (exact) and the worst of them is better than the worst old one; Surface where the
+ * where all new cells are positive (exact) and the worst of them is better than the worst old one, or than the angle of
+ * the cosine `enough` (-1: none is); Surface where the
  * edge is part of a curve, or a side of one cell is part of another surface; Topology where c and d are joined already.
  * Whether the surface stays near its place and off itself is not looked at. Made by TetraComplex::ReplaceAcross. */
 SurfaceFlip
-PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b);
+PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough = -1.0);
 
 /** Cosine of the smallest dihedral angle of a living cell: the larger the worse. */
 double

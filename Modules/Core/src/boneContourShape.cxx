@@ -51,6 +51,34 @@ PolygonsOf(const ContourStack & stack, const ContourSlice & slice)
   }
   return polygons;
 }
+double
+LengthOf(const std::vector<Vector2> & polygon)
+{
+  double length = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+  }
+  return length;
+}
+
+/** Calls visit(point, unit normal to the right) at points evenly along a polygon. */
+template <typename TVisit>
+void
+WalkPolygon(const std::vector<Vector2> & polygon, double step, TVisit visit)
+{
+  double next = 0.5 * step, along = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const Vector2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const double  length = edge.norm();
+    for (; length > 0 && next <= along + length; next += step)
+    {
+      visit(polygon[i] + edge * ((next - along) / length), Vector2(edge.y(), -edge.x()) / length);
+    }
+    along += length;
+  }
+}
 } // namespace
 
 ContourShape::ContourShape(const ContourStack & stack)
@@ -86,6 +114,7 @@ ContourShape::ContourShape(const ContourStack & stack)
           segments.push_back({ a, b, b });
         }
         section.polygons.push_back(q);
+        section.sides.push_back((polygon.inside >= level) == (SignedArea(q) > 0) ? 1.0 : -1.0);
       }
       section.tree = TriangleTree(std::move(segments));
       m_Sections.back().push_back(std::move(section));
@@ -113,6 +142,64 @@ ContourShape::Section::Evaluate(const Vector2 & q) const
   const auto &  segment = tree.GetTriangle(nearest.triangle);
   const Vector2 along(segment[1].x() - segment[0].x(), segment[1].y() - segment[0].y());
   return { 0.0, Vector2(along.y(), -along.x()).normalized() };
+}
+
+template <typename TVisit>
+void
+ContourShape::ForEachSection(int level, TVisit visit) const
+{
+  for (std::size_t k = 0; k < m_Sections.size(); ++k)
+  {
+    if (level > 0 && m_Sections[k].size() >= static_cast<std::size_t>(level))
+    {
+      visit(k, m_Sections[k][level - 1]);
+    }
+  }
+}
+
+int
+ContourShape::GetLevels() const
+{
+  std::size_t levels = 0;
+  for (const auto & sections : m_Sections)
+  {
+    levels = std::max(levels, sections.size());
+  }
+  return static_cast<int>(levels);
+}
+
+double
+ContourShape::GetContourLength(int level) const
+{
+  double length = 0.0;
+  this->ForEachSection(level, [&](std::size_t, const Section & section) {
+    for (const auto & polygon : section.polygons)
+    {
+      length += LengthOf(polygon);
+    }
+  });
+  return length;
+}
+
+std::vector<ContourShape::Sample>
+ContourShape::SampleContours(int level, double spacing) const
+{
+  constexpr double    fewest = 3.0;
+  std::vector<Sample> samples;
+  this->ForEachSection(level, [&](std::size_t k, const Section & section) {
+    const std::size_t next = std::min(k + 1, m_Heights.size() - 1), last = k > 0 ? k - 1 : 0;
+    const double      thickness = 0.5 * (m_Heights[next] - m_Heights[last]);
+    for (std::size_t i = 0; i < section.polygons.size(); ++i)
+    {
+      const double length = LengthOf(section.polygons[i]);
+      const double step = length / std::max(fewest, std::ceil(length / spacing));
+      WalkPolygon(section.polygons[i], step, [&](const Vector2 & x, const Vector2 & right) {
+        samples.push_back(
+          { m_Frame->FromPlane(x, m_Heights[k]), m_Frame->FromPlane(section.sides[i] * right, 0.0), step * thickness });
+      });
+    }
+  });
+  return samples;
 }
 
 std::optional<ContourShape::Value>

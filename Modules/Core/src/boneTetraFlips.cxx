@@ -300,7 +300,7 @@ public:
         continue;
       }
       const std::size_t ring = m_Parameters.cellCount == FlipCellCount::Any ? 4 : RingLength(a, b);
-      const bool fewer =
+      const bool        fewer =
         m_Parameters.cellCount != FlipCellCount::Same && m_Complex.AliveCells() > m_Parameters.minimumCells;
       if (ring > 4 || (ring < 4 && !fewer))
       {
@@ -427,7 +427,7 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
 }
 
 SurfaceFlip
-PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b)
+PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough)
 {
   SurfaceFlip       plan;
   std::vector<Ring> sides;
@@ -506,6 +506,7 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b)
   }
   plan.outcome = MeshOperation::Quality;
   const auto & p = complex.Points();
+  const double limit = std::max(before - MinimumGain, enough);
   double       after = -1.0;
   for (Ring & side : sides)
   {
@@ -519,9 +520,9 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b)
     {
       std::reverse(side.points.begin(), side.points.end());
     }
-    const RingTriangulation triangulation(complex, side, a, b, before - MinimumGain);
+    const RingTriangulation triangulation(complex, side, a, b, limit);
     after = std::max(after, triangulation.Worst());
-    if (!(after < before - MinimumGain))
+    if (!(after < limit))
     {
       return plan;
     }

@@ -79,6 +79,35 @@ TEST(ContourShape, LevelsHaveWhatLiesWithinAndHolesAreOutsideOfAll)
   }
 }
 
+TEST(ContourShape, SamplesLieOnTheContoursOfTheirLevelAndLookOut)
+{
+  const ContourShape shape = Cone();
+  EXPECT_EQ(shape.GetLevels(), 2);
+  const double turn = 2.0 * std::acos(-1.0);
+  // Radii of the outer contour are 10, 11, 13, of the hole 2, of the second level 6; slices stand for 1, 3 and 2 mm.
+  const double length[3] = { 0.0, turn * (34 + 3 * 2), turn * (3 * 6 + 3 * 2) };
+  const double area[3] = { 0.0, turn * (10 * 1 + 11 * 3 + 13 * 2 + 2 * 6), turn * (6 + 2) * 6 };
+  for (int level : { 1, 2 })
+  {
+    double     sum = 0.0;
+    const auto samples = shape.SampleContours(level, 0.5);
+    for (const auto & sample : samples)
+    {
+      const double r = std::hypot(sample.place.x(), sample.place.y());
+      const double exact = r < 4 ? 2.0 : level == 2 ? 6.0 : 10.0 + 0.5 * sample.place.z();
+      EXPECT_NEAR(r, exact, 2e-3);
+      EXPECT_NEAR(sample.outward.dot(sample.place) / r, r < 4 ? -1.0 : 1.0, 1e-3);
+      EXPECT_NEAR(shape.Evaluate(level, sample.place)->distance, 0.0, 1e-9);
+      sum += sample.weight;
+    }
+    EXPECT_NEAR(shape.GetContourLength(level), length[level], 1e-3 * length[level]);
+    EXPECT_NEAR(sum, area[level], 1e-3 * area[level]);
+    EXPECT_NEAR(static_cast<double>(samples.size()), length[level] / 0.5, 6.0);
+  }
+  EXPECT_TRUE(shape.SampleContours(3, 0.5).empty());
+  EXPECT_TRUE(shape.SampleContours(0, 0.5).empty());
+}
+
 TEST(ContourShape, IsUnknownBeyondTheSlicesAndWithoutTheLevel)
 {
   const ContourShape shape = Cone();

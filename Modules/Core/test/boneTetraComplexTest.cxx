@@ -4,6 +4,7 @@
 #include "boneTetraComplex.h"
 
 #include "boneMeshValidator.h"
+#include "boneQualityMeasures.h"
 #include "boneTestBodies.h"
 #include "boneTetraFlips.h"
 
@@ -195,6 +196,34 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
     EXPECT_EQ(BoundaryFaces(made).size(), BoundaryFaces(mesh).size());
     EXPECT_EQ(BoundaryFaces(made, 2).size(), BoundaryFaces(mesh, 2).size());
   }
+}
+
+TEST(TetraFlips, SurfaceFlipsMayLowerAnglesThatStayLargeEnough)
+{
+  const TetraComplex complex(test::MakeBall(3, { 1, 1, 2 }, 10, 0.1, 1));
+  const double       enough = std::cos(0.2);
+  std::size_t        better = 0, good = 0;
+  for (IdType a = 0; a < static_cast<IdType>(complex.Points().size()); ++a)
+  {
+    for (IdType b : complex.PointNeighbors(a))
+    {
+      better += PlanSurfaceFlip(complex, a, b).outcome == MeshOperation::Done;
+      const SurfaceFlip plan = PlanSurfaceFlip(complex, a, b, enough);
+      good += plan.outcome == MeshOperation::Done;
+      double before = -1.0;
+      for (IdType t : plan.removed)
+      {
+        before = std::max(before, CellCosine(complex, t));
+      }
+      for (std::size_t i = 0; plan.outcome == MeshOperation::Done && i < plan.created.size(); ++i)
+      {
+        const auto & p = complex.Points();
+        const Id4 &  c = plan.created[i];
+        EXPECT_LT(LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]), std::max(enough, before));
+      }
+    }
+  }
+  EXPECT_GT(good, better + 10);
 }
 
 TEST(TetraFlips, SurfaceFlipsKeepMeshValidAndNeverLowerTheWorstAngle)
