@@ -21,9 +21,11 @@ struct ImprovementParameters
   double repairAngle{ 0.35 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
   double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
-  double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go to mend cells below surfaceAngle
+  double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
+  double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
   int    fitSteps{ 5 };           ///< of the fit of surfaces at the end
-  double stiffness{ 0.05 };       ///< of surfaces in that fit
+  double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
+  double stiffness{ 0.0 };        ///< of surfaces in that fit
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
 };
@@ -31,11 +33,12 @@ struct ImprovementParameters
 struct ImprovementReport
 {
   SmoothingReport smoothing;
-  std::size_t     flips{ 0 };     ///< inside regions
-  std::size_t     repairs{ 0 };   ///< surface edges flipped, edges collapsed at bad cells
-  std::size_t     splits{ 0 };    ///< edges inside regions halved
-  std::size_t     collapses{ 0 }; ///< of short edges inside regions
-  std::size_t     optimized{ 0 }; ///< points moved by optimisation
+  std::size_t     flips{ 0 };        ///< inside regions
+  std::size_t     repairs{ 0 };      ///< surface edges flipped, edges collapsed at bad cells
+  std::size_t     splits{ 0 };       ///< edges inside regions halved
+  std::size_t     collapses{ 0 };    ///< of short edges inside regions
+  std::size_t     contourFlips{ 0 }; ///< of surface edges, towards contours
+  std::size_t     optimized{ 0 };    ///< points moved by optimisation
 };
 
 /** \brief Makes a valid layered mesh good to compute with.
@@ -46,7 +49,8 @@ struct ImprovementReport
  *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
  *    Last, cells below surfaceAngle are looked after once more with a wider bound of surfaces (\ref SurfaceBound).
  * 3. Boundary and interfaces are fitted to the shape of the contours that the mesh was made of, if they are given, else
- *    to the first surfaces (\ref FitSurfaces), and the regions get their volumes back once more.
+ *    to the first surfaces (\ref FitSurfaces); before that surface edges are flipped where contours lie closer to the
+ *    other two triangles (\ref FlipToContours). The regions get their volumes back once more.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

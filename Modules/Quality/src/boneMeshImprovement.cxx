@@ -3,10 +3,12 @@
  *=========================================================================*/
 #include "boneMeshImprovement.h"
 
+#include "boneContourFlips.h"
 #include "boneInteriorRefinement.h"
 #include "boneSurfaceFit.h"
 #include "boneVolumeKeeper.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bone
@@ -20,6 +22,11 @@ constexpr double ShortEdge = 0.6;
 constexpr double TinyEdge = 1e-3;
 constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
+/** Of flips to contours, each after a short fit. */
+constexpr int ContourFlipPasses = 2;
+constexpr int FitStepsBeforeFlips = 2;
+/** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
+constexpr double SurfaceFactor = 1.5;
 
 class MeshImprover
 {
@@ -55,11 +62,12 @@ public:
       ImproveWorst((round + 1) / steps, 1.0 / steps);
       MendSlivers();
     }
-    SurfaceFitParameters fit;
-    fit.steps = m_Parameters.fitSteps;
-    fit.stiffness = m_Parameters.stiffness;
-    fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-    FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
+    for (int pass = 0; pass < ContourFlipPasses && m_Parameters.shape; ++pass)
+    {
+      Fit(std::min(FitStepsBeforeFlips, m_Parameters.fitSteps));
+      FlipToContours();
+    }
+    Fit(m_Parameters.fitSteps);
     m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.repairAngle));
     return m_Report;
   }
@@ -130,20 +138,48 @@ private:
     }
   }
 
-  /** What no change within the bound has mended may go farther. */
+  void
+  Fit(int steps)
+  {
+    SurfaceFitParameters fit;
+    fit.steps = steps;
+    fit.stiffness = m_Parameters.stiffness;
+    fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+    FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
+  }
+
+  void
+  FlipToContours()
+  {
+    ContourFlipParameters flips;
+    flips.leastGain = std::pow(m_Parameters.flipGain * m_Parameters.distanceBound, 2);
+    flips.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+    const ContourSamples contours(m_Complex, *m_Parameters.shape);
+    m_Report.contourFlips += bone::FlipToContours(m_Complex, m_Mover, contours, flips);
+  }
+
+  /** What no change within the bound has mended may go farther, and the worst cells farther still. */
   void
   MendSlivers()
   {
-    const double limit = std::cos(m_Parameters.surfaceAngle);
-    m_Bound.SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
+    MendBelow(m_Parameters.surfaceAngle, std::min(SurfaceFactor, m_Parameters.sliverFactor));
+    MendBelow(m_Parameters.sliverAngle, m_Parameters.sliverFactor);
+    m_Bound.SetBound(m_Parameters.distanceBound);
+  }
+
+  /** \param factor  distance bounds that surfaces may go. */
+  void
+  MendBelow(double angle, double factor)
+  {
+    const double limit = std::cos(angle);
+    m_Bound.SetBound(factor * m_Parameters.distanceBound);
     m_Optimizer.MarkAll();
     for (int pass = 0; pass < SliverPasses; ++pass)
     {
-      Repair(m_Parameters.surfaceAngle);
+      Repair(angle);
       m_Report.optimized += m_Optimizer.Run(limit, limit);
       Flip(m_Parameters.targetAngle);
     }
-    m_Bound.SetBound(m_Parameters.distanceBound);
   }
 
   TetraComplex &                m_Complex;

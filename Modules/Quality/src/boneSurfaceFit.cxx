@@ -3,6 +3,9 @@
  *=========================================================================*/
 #include "boneSurfaceFit.h"
 
+#include "boneContourSamples.h"
+
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -12,17 +15,25 @@ namespace
 {
 /** Moves shorter than this share of the mean surface edge are not made. */
 constexpr double ShortestMove = 2e-3;
+/** Weight of what lies between slices, where contours are known, next to the contours themselves. */
+constexpr double WeightBetweenSlices = 0.1;
 
 struct Residuals
 {
   std::vector<Vector3> normal; ///< #p, area-weighted
   std::vector<double>  shift;  ///< #p, sum of weighted distances
   std::vector<double>  weight; ///< #p
+  std::vector<Vector3> pull;   ///< #p, sum of weighted ways along the surface
   double               shortest{ 0.0 };
 };
 
-/** Barycentric coordinates of the samples of a triangle: exact for quadratic distances. */
-constexpr double Samples[3][3] = { { 2. / 3, 1. / 6, 1. / 6 }, { 1. / 6, 2. / 3, 1. / 6 }, { 1. / 6, 1. / 6, 2. / 3 } };
+using Barycentric = std::array<double, 3>;
+
+/** Samples of a triangle, of equal weight: three are exact for quadratic distances; next to contours one will do. */
+const std::vector<Barycentric> ThreeSamples = { { 2. / 3, 1. / 6, 1. / 6 },
+                                                { 1. / 6, 2. / 3, 1. / 6 },
+                                                { 1. / 6, 1. / 6, 2. / 3 } };
+const std::vector<Barycentric> OneSample = { { 1. / 3, 1. / 3, 1. / 3 } };
 
 /** Distance from x along a unit normal, outward from the level, to the shape; none where the shape is far or its
  * surface lies across the normal: contours that the mesh has left out. */
@@ -40,15 +51,18 @@ ToShape(const ContourShape & shape, int level, const Vector3 & x, const Vector3 
 }
 
 Residuals
-Measure(const TetraComplex & complex, const SurfaceTarget & target, const ContourShape * shape)
+MeasureTriangles(const TetraComplex & complex, const SurfaceTarget & target, const ContourShape * shape)
 {
   const auto & x = complex.Points();
   Residuals    r;
   r.normal.assign(x.size(), Vector3::Zero());
   r.shift.assign(x.size(), 0.0);
   r.weight.assign(x.size(), 0.0);
-  double      edges = 0.0;
-  std::size_t count = 0;
+  r.pull.assign(x.size(), Vector3::Zero());
+  const auto & samples = shape ? OneSample : ThreeSamples;
+  const double share = (shape ? WeightBetweenSlices : 1.0) / static_cast<double>(samples.size());
+  double       edges = 0.0;
+  std::size_t  count = 0;
   for (IdType t = 0; t < complex.Size(); ++t)
   {
     for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
@@ -73,15 +87,16 @@ Measure(const TetraComplex & complex, const SurfaceTarget & target, const Contou
       const Vector3 outward = normal * (sign / area);
       edges += (x[f[1]] - x[f[0]]).norm();
       ++count;
-      for (const auto & sample : Samples)
+      for (const Barycentric & sample : samples)
       {
         const Vector3 place = sample[0] * x[f[0]] + sample[1] * x[f[1]] + sample[2] * x[f[2]];
         const auto    toShape = shape ? ToShape(*shape, level, place, outward) : std::nullopt;
         const double distance = toShape ? *toShape * sign : (target.Nearest(surface, place) - place).dot(normal) / area;
+        const double weight = share * area / 2.0;
         for (int k = 0; k < 3; ++k)
         {
-          r.shift[f[k]] += sample[k] * area * distance;
-          r.weight[f[k]] += sample[k] * area;
+          r.shift[f[k]] += sample[k] * weight * distance;
+          r.weight[f[k]] += sample[k] * weight;
         }
       }
       for (IdType p : f)
@@ -92,6 +107,28 @@ Measure(const TetraComplex & complex, const SurfaceTarget & target, const Contou
   }
   r.shortest = count > 0 ? ShortestMove * edges / static_cast<double>(count) : 0.0;
   return r;
+}
+
+/** Distances from triangles to the contours at them, and ways from their edges to contours beside them. */
+void
+MeasureContours(const TetraComplex & complex, const ContourSamples & contours, Residuals & r)
+{
+  const auto & x = complex.Points();
+  for (const ContourSamples::Match & match : contours.FindMatches(complex))
+  {
+    const TriangleIds & f = match.triangle;
+    const Vector3       way = match.sample->place - match.foot;
+    const double        distance = way.dot(match.normal);
+    const double        area = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).dot(match.normal);
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vector3 &a = x[f[(k + 1) % 3]], &b = x[f[(k + 2) % 3]];
+      const double   weight = match.weight * (a - match.foot).cross(b - match.foot).dot(match.normal) / area;
+      r.shift[f[k]] += weight * distance;
+      r.weight[f[k]] += weight;
+      r.pull[f[k]] += weight * (way - distance * match.normal);
+    }
+  }
 }
 
 /** Mean of the neighbours along the surface less the value, of all surface points; zero on flat cuts. */
@@ -131,10 +168,15 @@ FitSurfaces(TetraComplex &               complex,
 {
   constexpr int halvings = 3;
   std::size_t   moves = 0;
+  const auto    contours = shape ? std::make_optional<ContourSamples>(complex, *shape) : std::nullopt;
   for (int step = 0; step < parameters.steps; ++step)
   {
-    const Residuals            r = Measure(complex, first, shape);
+    Residuals                  r = MeasureTriangles(complex, first, shape);
     const std::vector<Vector3> bending = Umbrella(complex, Umbrella(complex, complex.Points()));
+    if (contours)
+    {
+      MeasureContours(complex, *contours, r);
+    }
     for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
     {
       const double length = r.normal[p].norm();
@@ -143,10 +185,12 @@ FitSurfaces(TetraComplex &               complex,
         continue;
       }
       const Vector3 normal = r.normal[p] / length;
+      Vector3       pull = r.pull[p] / r.weight[p];
       double        shift = r.shift[p] / r.weight[p] - parameters.stiffness * bending[p].dot(normal);
-      for (int half = 0; half < halvings && std::abs(shift) > r.shortest; ++half, shift /= 2.0)
+      for (int half = 0; half < halvings && std::abs(shift) > r.shortest; ++half, shift /= 2.0, pull /= 2.0)
       {
-        if (mover.TryMove(p, complex.Points()[p] + shift * normal, parameters.cosineFloor) == MeshOperation::Done)
+        if (mover.TryMove(p, complex.Points()[p] + shift * normal + pull, parameters.cosineFloor) ==
+            MeshOperation::Done)
         {
           ++moves;
           break;

@@ -1,0 +1,168 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneContourFlips.h"
+
+#include "boneTetraFlips.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace bone
+{
+namespace
+{
+/** Of the mean squared distance, at most this share may be left. */
+constexpr double LargestShare = 0.9;
+
+TriangleIds
+Ascending(TriangleIds ids)
+{
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+using Samples = std::vector<const ContourShape::Sample *>;
+
+class ContourFlipper
+{
+public:
+  ContourFlipper(TetraComplex &                complex,
+                 PointMover &                  mover,
+                 const ContourSamples &        contours,
+                 const ContourFlipParameters & parameters)
+    : m_Complex(complex)
+    , m_Mover(mover)
+    , m_Parameters(parameters)
+  {
+    for (const ContourSamples::Match & match : contours.FindMatches(complex))
+    {
+      m_Samples[Ascending(match.triangle)].push_back(match.sample);
+    }
+  }
+
+  /** Edges of triangles that contours belong to, ascending. */
+  std::set<std::pair<IdType, IdType>>
+  Edges() const
+  {
+    std::set<std::pair<IdType, IdType>> edges;
+    for (const auto & entry : m_Samples)
+    {
+      const TriangleIds & t = entry.first;
+      edges.insert({ { t[0], t[1] }, { t[0], t[2] }, { t[1], t[2] } });
+    }
+    return edges;
+  }
+
+  /** The cells that came; none where the edge was not flipped. */
+  std::vector<IdType>
+  Flip(IdType a, IdType b)
+  {
+    const auto corners = Corners(a, b);
+    if (!corners)
+    {
+      return {};
+    }
+    const auto [c, d] = *corners;
+    const Pair before{ { Ascending({ a, b, c }), Ascending({ a, b, d }) } };
+    const Pair after{ { Ascending({ a, c, d }), Ascending({ b, c, d }) } };
+    Samples    samples = m_Samples[before[0]];
+    samples.insert(samples.end(), m_Samples[before[1]].begin(), m_Samples[before[1]].end());
+    if (!IsCloser(samples, before, after))
+    {
+      return {};
+    }
+    const SurfaceFlip plan = PlanSurfaceFlip(m_Complex, a, b, m_Parameters.cosineFloor);
+    const int         f = plan.surface;
+    if (plan.outcome != MeshOperation::Done ||
+        !m_Mover.ReplaceSurface({ { { a, b, c }, f }, { { a, b, d }, f } }, { { { a, c, d }, f }, { { b, c, d }, f } }))
+    {
+      return {};
+    }
+    m_Samples.erase(before[0]);
+    m_Samples.erase(before[1]);
+    for (const ContourShape::Sample * sample : samples)
+    {
+      const bool second = SquaredDistance(*sample, after[1]) < SquaredDistance(*sample, after[0]);
+      m_Samples[after[second]].push_back(sample);
+    }
+    return m_Complex.ReplaceAcross(plan.removed, plan.created, plan.regions, plan.surface);
+  }
+
+private:
+  using Pair = std::array<TriangleIds, 2>;
+
+  /** Third points of the two surface triangles at an edge; none where there are others. */
+  std::optional<std::array<IdType, 2>>
+  Corners(IdType a, IdType b) const
+  {
+    std::array<IdType, 2> corners{};
+    int                   count = 0;
+    for (IdType t : m_Complex.EdgeStar(a, b))
+    {
+      const Id4 & cell = m_Complex.Cell(t);
+      for (int i = 0; i < 4; ++i)
+      {
+        if (cell[i] != a && cell[i] != b && m_Complex.Carries(t, i))
+        {
+          const IdType third = cell[0] + cell[1] + cell[2] + cell[3] - a - b - cell[i];
+          corners[std::min(count++, 1)] = third;
+        }
+      }
+    }
+    return count == 2 ? std::make_optional(corners) : std::nullopt;
+  }
+
+  double
+  SquaredDistance(const ContourShape::Sample & sample, const TriangleIds & t) const
+  {
+    const auto & x = m_Complex.Points();
+    return (ClosestPointOnTriangle(sample.place, x[t[0]], x[t[1]], x[t[2]]) - sample.place).squaredNorm();
+  }
+
+  bool
+  IsCloser(const Samples & samples, const Pair & before, const Pair & after) const
+  {
+    double weight = 0.0, old = 0.0, made = 0.0;
+    for (const ContourShape::Sample * sample : samples)
+    {
+      weight += sample->weight;
+      old += sample->weight * std::min(SquaredDistance(*sample, before[0]), SquaredDistance(*sample, before[1]));
+      made += sample->weight * std::min(SquaredDistance(*sample, after[0]), SquaredDistance(*sample, after[1]));
+    }
+    return samples.size() > 1 && made < LargestShare * old - m_Parameters.leastGain * weight;
+  }
+
+  TetraComplex &                 m_Complex;
+  PointMover &                   m_Mover;
+  const ContourFlipParameters &  m_Parameters;
+  std::map<TriangleIds, Samples> m_Samples; ///< of each triangle, its ids ascending
+};
+} // namespace
+
+std::size_t
+FlipToContours(TetraComplex &                                           complex,
+               PointMover &                                             mover,
+               const ContourSamples &                                   contours,
+               const ContourFlipParameters &                            parameters,
+               const std::function<void(const std::vector<IdType> &)> & changed)
+{
+  ContourFlipper flipper(complex, mover, contours, parameters);
+  std::size_t    count = 0;
+  for (const auto & [a, b] : flipper.Edges())
+  {
+    const std::vector<IdType> cells = flipper.Flip(a, b);
+    if (!cells.empty())
+    {
+      ++count;
+      if (changed)
+      {
+        changed(cells);
+      }
+    }
+  }
+  return count;
+}
+} // namespace bone

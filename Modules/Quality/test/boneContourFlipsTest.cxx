@@ -1,0 +1,178 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneContourFlips.h"
+
+#include "../../Core/test/boneTestBodies.h"
+#include "boneMeshQualityFilter.h"
+#include "boneMeshValidator.h"
+#include "boneQualityMeasures.h"
+#include "boneTetraFlips.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace bone;
+
+namespace
+{
+constexpr double Radius = 12.0;
+
+/** A rod of two regions whose slices turn by `twist` rad a mm: with one sense the surface's diagonals are its short
+ * ones, with the other its long ones, which run deeper within. */
+MeshArrays
+TwistedRod(double twist)
+{
+  test::TubeShape shape;
+  shape.rings = { 1, 2 };
+  shape.radius = Radius;
+  shape.bend = 0.0;
+  shape.jitter = 0.0;
+  MeshArrays mesh = test::MakeTube(shape);
+  for (Vector3 & x : mesh.points)
+  {
+    const double c = std::cos(twist * x.z()), s = std::sin(twist * x.z());
+    x = Vector3(c * x.x() - s * x.y(), s * x.x() + c * x.y(), x.z());
+  }
+  return mesh;
+}
+
+/** Contours of a rod, with `inner` (where positive) as the radius of its second region. */
+ContourStack::Pointer
+RodContours(double inner)
+{
+  constexpr int                around = 96;
+  const double                 turn = 2.0 * std::acos(-1.0) / around;
+  ContourStack::SliceContainer slices;
+  for (double z = 0.0; z <= 22.0; z += 0.5)
+  {
+    slices.emplace_back();
+    slices.back().origin = Vector3(0, 0, z);
+    for (const double radius : { Radius, inner })
+    {
+      Contour contour;
+      contour.region = radius == Radius ? Region::Cortical : Region::Spongy;
+      for (int i = 0; i < around; ++i)
+      {
+        contour.points.push_back(Vector3(radius * std::cos(i * turn), radius * std::sin(i * turn), z));
+      }
+      slices.back().contours.push_back(contour);
+    }
+  }
+  auto stack = ContourStack::New();
+  stack->SetSlices(slices);
+  return stack;
+}
+
+ContourShape
+Rod(double inner)
+{
+  return ContourShape(*RodContours(inner));
+}
+
+/** Mean squared distance of contours from the surfaces they belong to, mm^2. */
+double
+MeanSquare(const TetraComplex & complex, const ContourSamples & contours)
+{
+  double sum = 0.0, weight = 0.0;
+  for (const auto & match : contours.FindMatches(complex))
+  {
+    sum += match.weight * (match.sample->place - match.foot).squaredNorm();
+    weight += match.weight;
+  }
+  return sum / weight;
+}
+
+constexpr double Inner = Radius - Radius / 3.5;
+} // namespace
+
+TEST(ContourSamples, BelongToTrianglesOfTheirLevelThatLookTheirWay)
+{
+  const TetraComplex   complex(TwistedRod(0.0));
+  const ContourShape   shape = Rod(Inner);
+  const ContourSamples contours(complex, shape);
+  int                  counts[2] = {};
+  double               area = 0.0;
+  for (const auto & match : contours.FindMatches(complex))
+  {
+    const Vector3 & x = match.sample->place;
+    const double    radius = std::hypot(x.x(), x.y());
+    const bool      inner = radius < 0.9 * Radius;
+    ++counts[inner];
+    area += inner ? 0.0 : match.weight;
+    // Interfaces look inward from the smaller region, which carries them.
+    EXPECT_GT((inner ? -1.0 : 1.0) * match.normal.dot(match.sample->outward), 0.9);
+    EXPECT_LT((x - match.foot).norm(), 0.03 * Radius);
+    for (IdType p : match.triangle)
+    {
+      const Vector3 & y = complex.Points()[p];
+      EXPECT_NEAR(std::hypot(y.x(), y.y()), inner ? Inner : Radius, 0.05);
+    }
+  }
+  EXPECT_GT(counts[0], 1000);
+  EXPECT_GT(counts[1], 1000);
+  const double exact = 2.0 * std::acos(-1.0) * Radius * 22.0;
+  EXPECT_NEAR(area, exact, 0.05 * exact);
+}
+
+TEST(FlipToContours, SurfacesComeCloserAndTheMeshStaysValid)
+{
+  const ContourShape shape = Rod(Inner);
+  std::size_t        done = 0;
+  for (const double twist : { -0.12, 0.12 })
+  {
+    const auto            mesh = TwistedRod(twist);
+    TetraComplex          complex(mesh);
+    PointMover            mover(complex);
+    const ContourSamples  contours(complex, shape);
+    ContourFlipParameters parameters;
+    parameters.cosineFloor = std::cos(0.1);
+    const double      before = MeanSquare(complex, contours);
+    const std::size_t flips = FlipToContours(complex, mover, contours, parameters);
+    const double      after = MeanSquare(complex, contours);
+    EXPECT_TRUE(flips > 0 ? after < before : after == before) << before << ' ' << after;
+    done += flips;
+    std::vector<IdType> pointId, cellSlot;
+    const MeshArrays    made = complex.Compact(mesh, pointId, cellSlot);
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+    EXPECT_EQ(made.points, mesh.points);
+    for (std::size_t t = 0; flips > 0 && t < made.tetrahedra.size(); ++t)
+    {
+      const auto & p = made.points;
+      const Id4 &  c = made.tetrahedra[t];
+      EXPECT_LT(LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]), parameters.cosineFloor + 1e-9);
+    }
+    // It comes to rest: flips are not flipped back.
+    EXPECT_LE(FlipToContours(complex, mover, contours, parameters), flips / 2);
+  }
+  EXPECT_GT(done, 50u);
+}
+
+TEST(FlipToContours, NothingIsFlippedForLessThanTheGainAskedFor)
+{
+  const ContourShape    shape = Rod(Inner);
+  TetraComplex          complex(TwistedRod(0.12));
+  PointMover            mover(complex);
+  ContourFlipParameters parameters;
+  parameters.cosineFloor = std::cos(0.1);
+  parameters.leastGain = 10.0;
+  EXPECT_EQ(FlipToContours(complex, mover, ContourSamples(complex, shape), parameters), 0u);
+}
+
+TEST(FlipToContours, IsPartOfTheQualityStageWhereContoursAreGiven)
+{
+  const auto mesh = DensityMesh<double>::New();
+  mesh->SetArrays(TwistedRod(0.12));
+  for (const bool with : { false, true })
+  {
+    auto filter = MeshQualityFilter<DensityMesh<double>>::New();
+    filter->SetInput(mesh);
+    filter->SetRounds(1);
+    filter->SetContours(with ? RodContours(Inner).GetPointer() : nullptr);
+    filter->Update();
+    EXPECT_EQ(filter->GetReport().contourFlips > 0, with);
+    const auto validation = ValidateMesh(filter->GetOutput()->GetArrays());
+    EXPECT_TRUE(validation.IsValid()) << validation.Summary();
+  }
+}
