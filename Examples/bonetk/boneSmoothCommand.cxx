@@ -106,8 +106,8 @@ AddSmoothCommand(CLI::App & app, Action & action)
     "--contours", options->contours, "Contours (.vtp) of the bone, to which quality fits the surfaces");
   command->add_option("--distance", options->distance, "How far a surface may go, mm (quality, enhanced); default 0.3")
     ->check(NotNegative());
-  command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0")
-    ->check(Between(0.0, 0.49));
+  command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0.05")
+    ->check(NotNegative());
   command
     ->add_option(
       "--iterations", options->iterations, "Passes of smoothing; default 4 (at its start) in quality, else 10")

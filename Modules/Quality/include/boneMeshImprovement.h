@@ -23,9 +23,10 @@ struct ImprovementParameters
   double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
-  int    fitSteps{ 5 };           ///< of the fit of surfaces at the end
+  int    fitPasses{ 4 };          ///< of fitting surfaces, flipping their edges and smoothing inside, at the end
+  int    fitSteps{ 2 };           ///< a pass
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
-  double stiffness{ 0.0 };        ///< of surfaces in that fit
+  double stiffness{ 0.05 };       ///< of surfaces in that fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
 };
@@ -48,9 +49,10 @@ struct ImprovementReport
  *    surfaces ask for (\ref InteriorRefinement; not in the last round), the regions get their volumes back (\ref
  *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
  *    Last, cells below surfaceAngle are looked after once more with a wider bound of surfaces (\ref SurfaceBound).
- * 3. Boundary and interfaces are fitted to the shape of the contours that the mesh was made of, if they are given, else
- *    to the first surfaces (\ref FitSurfaces); before that surface edges are flipped where contours lie closer to the
- *    other two triangles (\ref FlipToContours). The regions get their volumes back once more.
+ * 3. In turn: boundary and interfaces are fitted to the contours that the mesh was made of, if they are given, else to
+ *    the first surfaces (\ref FitSurfaces); surface edges are flipped where contours lie closer to the other two
+ *    triangles or these turn less (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the worst
+ *    cells' inner points are optimised, and the regions get their volumes back once more.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

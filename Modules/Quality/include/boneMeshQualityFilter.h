@@ -23,11 +23,12 @@ namespace bone
  *
  * Surfaces stay within DistanceBound of the first ones and these within DistanceBound of them, as measured at the
  * corners, centroid and three more points of each triangle; where no change within it mends a cell with an angle below
- * 10 degrees, within 1.5 times that, and for an angle below 5 degrees within SliverFactor times that.
+ * 10 degrees, within 1.5 times that. Within SliverFactor times that where the angle is below 5 degrees, and where
+ * surfaces are fitted, as contours that the mesh has left out may be that far from it.
  *
  * Optional input "Contours": what the mesh was tiled from, best before slices were left out and contours resampled.
  * Surfaces are then fitted to the contours (\ref FitSurfaces), and their edges flipped where that brings contours
- * closer (\ref FlipToContours): on the whole they come nearer to the bone than the tiling was.
+ * closer or makes the surface turn less (\ref FlipToContours).
  *
  * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
  * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
@@ -72,8 +73,8 @@ public:
   /** How many times DistanceBound surfaces may go to mend the worst cells, at least 1; default 4. */
   itkSetMacro(SliverFactor, double);
   itkGetConstMacro(SliverFactor, double);
-  /** Resistance of surfaces to bending where they are fitted: the larger, the smoother and the farther from the first
-   * ones or the contours; default 0: none. Steps are stable below 0.5. */
+  /** Resistance of surfaces to bending where they are fitted (\ref SurfaceBending), without unit: the larger, the
+   * smoother and the farther from the first ones or the contours; default 0.05, 0: none. */
   itkSetMacro(Stiffness, double);
   itkGetConstMacro(Stiffness, double);
   /** What the last run did. */
@@ -102,7 +103,7 @@ private:
   double            m_Gradation{ 0.7 };
   int               m_OptimizationPasses{ 2 };
   double            m_SliverFactor{ 4.0 };
-  double            m_Stiffness{ 0.0 };
+  double            m_Stiffness{ 0.05 };
   ImprovementReport m_Report;
 };
 

@@ -47,9 +47,9 @@ MeshQualityFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
   {
     itkExceptionMacro("SliverFactor is " << m_SliverFactor << "; it must be finite and at least 1.");
   }
-  if (!(m_Stiffness >= 0 && m_Stiffness < 0.5))
+  if (!(m_Stiffness >= 0 && std::isfinite(m_Stiffness)))
   {
-    itkExceptionMacro("Stiffness is " << m_Stiffness << "; it must lie between 0 and 0.5, which is excluded.");
+    itkExceptionMacro("Stiffness is " << m_Stiffness << "; it must be finite and not negative.");
   }
   if (!(m_TargetAngle > 0 && m_TargetAngle < 1.23))
   {

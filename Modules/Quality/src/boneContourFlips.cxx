@@ -14,9 +14,6 @@ namespace bone
 {
 namespace
 {
-/** Of the mean squared distance, at most this share may be left. */
-constexpr double LargestShare = 0.9;
-
 TriangleIds
 Ascending(TriangleIds ids)
 {
@@ -32,9 +29,11 @@ public:
   ContourFlipper(TetraComplex &                complex,
                  PointMover &                  mover,
                  const ContourSamples &        contours,
+                 const SurfaceBending &        bending,
                  const ContourFlipParameters & parameters)
     : m_Complex(complex)
     , m_Mover(mover)
+    , m_Bending(bending)
     , m_Parameters(parameters)
   {
     for (const ContourSamples::Match & match : contours.FindMatches(complex))
@@ -70,7 +69,7 @@ public:
     const Pair after{ { Ascending({ a, c, d }), Ascending({ b, c, d }) } };
     Samples    samples = m_Samples[before[0]];
     samples.insert(samples.end(), m_Samples[before[1]].begin(), m_Samples[before[1]].end());
-    if (!IsCloser(samples, before, after))
+    if (!IsBetter(samples, { { a, b, c, d } }))
     {
       return {};
     }
@@ -122,21 +121,52 @@ private:
     return (ClosestPointOnTriangle(sample.place, x[t[0]], x[t[1]], x[t[2]]) - sample.place).squaredNorm();
   }
 
-  bool
-  IsCloser(const Samples & samples, const Pair & before, const Pair & after) const
+  double
+  Bending(IdType a, IdType b, IdType c, IdType d) const
   {
-    double weight = 0.0, old = 0.0, made = 0.0;
+    const auto & x = m_Complex.Points();
+    return m_Bending.Energy(x[a], x[b], x[c], x[d]);
+  }
+
+  /** By how much the bending of a quadrangle's edges falls where its diagonal (a, b) becomes (c, d). */
+  double
+  BendingGain(const std::array<IdType, 4> & quadrangle) const
+  {
+    const auto [a, b, c, d] = quadrangle;
+    // Sides, the corner that they lose and the one that they get.
+    const std::array<IdType, 4> sides[4] = {
+      { { a, c, b, d } }, { { b, c, a, d } }, { { a, d, b, c } }, { { b, d, a, c } }
+    };
+    double gain = Bending(a, b, c, d) - Bending(c, d, a, b);
+    for (const auto & [p, q, lost, gained] : sides)
+    {
+      if (const auto corners = Corners(p, q))
+      {
+        const IdType beyond = (*corners)[0] == lost ? (*corners)[1] : (*corners)[0];
+        gain += Bending(p, q, lost, beyond) - Bending(p, q, gained, beyond);
+      }
+    }
+    return gain;
+  }
+
+  bool
+  IsBetter(const Samples & samples, const std::array<IdType, 4> & quadrangle) const
+  {
+    const auto [a, b, c, d] = quadrangle;
+    const Pair before{ { { a, b, c }, { a, b, d } } }, after{ { { a, c, d }, { b, c, d } } };
+    double     weight = 0.0, old = 0.0, made = 0.0;
     for (const ContourShape::Sample * sample : samples)
     {
       weight += sample->weight;
       old += sample->weight * std::min(SquaredDistance(*sample, before[0]), SquaredDistance(*sample, before[1]));
       made += sample->weight * std::min(SquaredDistance(*sample, after[0]), SquaredDistance(*sample, after[1]));
     }
-    return samples.size() > 1 && made < LargestShare * old - m_Parameters.leastGain * weight;
+    return samples.size() > 1 && old - made + BendingGain(quadrangle) > m_Parameters.leastGain * weight;
   }
 
   TetraComplex &                 m_Complex;
   PointMover &                   m_Mover;
+  const SurfaceBending &         m_Bending;
   const ContourFlipParameters &  m_Parameters;
   std::map<TriangleIds, Samples> m_Samples; ///< of each triangle, its ids ascending
 };
@@ -146,10 +176,11 @@ std::size_t
 FlipToContours(TetraComplex &                                           complex,
                PointMover &                                             mover,
                const ContourSamples &                                   contours,
+               const SurfaceBending &                                   bending,
                const ContourFlipParameters &                            parameters,
                const std::function<void(const std::vector<IdType> &)> & changed)
 {
-  ContourFlipper flipper(complex, mover, contours, parameters);
+  ContourFlipper flipper(complex, mover, contours, bending, parameters);
   std::size_t    count = 0;
   for (const auto & [a, b] : flipper.Edges())
   {

@@ -22,9 +22,6 @@ constexpr double ShortEdge = 0.6;
 constexpr double TinyEdge = 1e-3;
 constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
-/** Of flips to contours, each after a short fit. */
-constexpr int ContourFlipPasses = 2;
-constexpr int FitStepsBeforeFlips = 2;
 /** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
 constexpr double SurfaceFactor = 1.5;
 
@@ -62,12 +59,7 @@ public:
       ImproveWorst((round + 1) / steps, 1.0 / steps);
       MendSlivers();
     }
-    for (int pass = 0; pass < ContourFlipPasses && m_Parameters.shape; ++pass)
-    {
-      Fit(std::min(FitStepsBeforeFlips, m_Parameters.fitSteps));
-      FlipToContours();
-    }
-    Fit(m_Parameters.fitSteps);
+    FitSurfacesAndInside();
     m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.repairAngle));
     return m_Report;
   }
@@ -138,14 +130,30 @@ private:
     }
   }
 
+  /** Surfaces to contours or first surfaces, then what is inside to them, in turn. */
   void
-  Fit(int steps)
+  FitSurfacesAndInside()
   {
-    SurfaceFitParameters fit;
-    fit.steps = steps;
-    fit.stiffness = m_Parameters.stiffness;
-    fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-    FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
+    // Between slices that the mesh has left out, contours may lie farther from it than its bound.
+    m_Bound.SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
+    for (int pass = 0; pass < m_Parameters.fitPasses; ++pass)
+    {
+      SurfaceFitParameters fit;
+      fit.steps = m_Parameters.fitSteps;
+      fit.stiffness = m_Parameters.stiffness;
+      fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+      FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
+      if (m_Parameters.shape)
+      {
+        FlipToContours();
+      }
+      Smooth(SmoothingsInRound, SurfaceMotion::None);
+      m_Optimizer.MarkAll();
+      Flip(m_Parameters.targetAngle);
+    }
+    constexpr double noSurfaces = 1.0;
+    m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), noSurfaces);
+    m_Bound.SetBound(m_Parameters.distanceBound);
   }
 
   void
@@ -155,7 +163,8 @@ private:
     flips.leastGain = std::pow(m_Parameters.flipGain * m_Parameters.distanceBound, 2);
     flips.cosineFloor = std::cos(m_Parameters.surfaceAngle);
     const ContourSamples contours(m_Complex, *m_Parameters.shape);
-    m_Report.contourFlips += bone::FlipToContours(m_Complex, m_Mover, contours, flips);
+    const SurfaceBending bending(m_Complex, m_Parameters.stiffness);
+    m_Report.contourFlips += bone::FlipToContours(m_Complex, m_Mover, contours, bending, flips);
   }
 
   /** What no change within the bound has mended may go farther, and the worst cells farther still. */

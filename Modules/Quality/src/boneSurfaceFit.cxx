@@ -4,6 +4,7 @@
 #include "boneSurfaceFit.h"
 
 #include "boneContourSamples.h"
+#include "boneSurfaceBending.h"
 
 #include <array>
 #include <cmath>
@@ -131,31 +132,22 @@ MeasureContours(const TetraComplex & complex, const ContourSamples & contours, R
   }
 }
 
-/** Mean of the neighbours along the surface less the value, of all surface points; zero on flat cuts. */
+/** Where distances and ways alone would bring the points; those that do not move get no weight. */
 std::vector<Vector3>
-Umbrella(const TetraComplex & complex, const std::vector<Vector3> & values)
+FindTargets(const TetraComplex & complex, Residuals & r)
 {
-  std::vector<Vector3> result(values.size(), Vector3::Zero());
-  std::vector<int>     count(values.size(), 0);
-  for (IdType t = 0; t < complex.Size(); ++t)
+  std::vector<Vector3> targets = complex.Points();
+  for (std::size_t p = 0; p < targets.size(); ++p)
   {
-    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    const double length = r.normal[p].norm();
+    if (complex.Dimension(static_cast<IdType>(p)) != 2 || !(length > 0 && r.weight[p] > 0))
     {
-      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
-      for (int k = 0; k < 3 && surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0; ++k)
-      {
-        // Each edge of a closed surface is met once in either direction.
-        const IdType p = complex.Cell(t)[TetraFaces[i][k]], q = complex.Cell(t)[TetraFaces[i][(k + 1) % 3]];
-        result[p] += values[q];
-        ++count[p];
-      }
+      r.weight[p] = 0.0;
+      continue;
     }
+    targets[p] += (r.shift[p] / length * r.normal[p] + r.pull[p]) / r.weight[p];
   }
-  for (std::size_t p = 0; p < values.size(); ++p)
-  {
-    result[p] = count[p] > 0 ? Vector3(result[p] / count[p] - values[p]) : Vector3::Zero();
-  }
-  return result;
+  return targets;
 }
 } // namespace
 
@@ -166,31 +158,28 @@ FitSurfaces(TetraComplex &               complex,
             const ContourShape *         shape,
             const SurfaceFitParameters & parameters)
 {
-  constexpr int halvings = 3;
-  std::size_t   moves = 0;
-  const auto    contours = shape ? std::make_optional<ContourSamples>(complex, *shape) : std::nullopt;
+  constexpr int        halvings = 3;
+  std::size_t          moves = 0;
+  const auto           contours = shape ? std::make_optional<ContourSamples>(complex, *shape) : std::nullopt;
+  const SurfaceBending bending(complex, parameters.stiffness);
   for (int step = 0; step < parameters.steps; ++step)
   {
-    Residuals                  r = MeasureTriangles(complex, first, shape);
-    const std::vector<Vector3> bending = Umbrella(complex, Umbrella(complex, complex.Points()));
+    Residuals r = MeasureTriangles(complex, first, shape);
     if (contours)
     {
       MeasureContours(complex, *contours, r);
     }
-    for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
+    std::vector<Vector3> targets = FindTargets(complex, r);
+    if (parameters.stiffness > 0)
     {
-      const double length = r.normal[p].norm();
-      if (complex.Dimension(p) != 2 || !(length > 0 && r.weight[p] > 0))
+      targets = bending.Solve(complex.Points(), targets, r.weight);
+    }
+    for (IdType p = 0; p < static_cast<IdType>(targets.size()); ++p)
+    {
+      Vector3 move = targets[p] - complex.Points()[p];
+      for (int half = 0; half < halvings && r.weight[p] > 0 && move.norm() > r.shortest; ++half, move /= 2.0)
       {
-        continue;
-      }
-      const Vector3 normal = r.normal[p] / length;
-      Vector3       pull = r.pull[p] / r.weight[p];
-      double        shift = r.shift[p] / r.weight[p] - parameters.stiffness * bending[p].dot(normal);
-      for (int half = 0; half < halvings && std::abs(shift) > r.shortest; ++half, shift /= 2.0, pull /= 2.0)
-      {
-        if (mover.TryMove(p, complex.Points()[p] + shift * normal + pull, parameters.cosineFloor) ==
-            MeshOperation::Done)
+        if (mover.TryMove(p, complex.Points()[p] + move, parameters.cosineFloor) == MeshOperation::Done)
         {
           ++moves;
           break;

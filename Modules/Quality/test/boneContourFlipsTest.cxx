@@ -7,6 +7,7 @@
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"
+#include "boneSurfaceTurns.h"
 #include "boneTetraFlips.h"
 
 #include <gtest/gtest.h>
@@ -128,9 +129,10 @@ TEST(FlipToContours, SurfacesComeCloserAndTheMeshStaysValid)
     const ContourSamples  contours(complex, shape);
     ContourFlipParameters parameters;
     parameters.cosineFloor = std::cos(0.1);
-    const double      before = MeanSquare(complex, contours);
-    const std::size_t flips = FlipToContours(complex, mover, contours, parameters);
-    const double      after = MeanSquare(complex, contours);
+    const SurfaceBending limp(complex, 0.0);
+    const double         before = MeanSquare(complex, contours);
+    const std::size_t    flips = FlipToContours(complex, mover, contours, limp, parameters);
+    const double         after = MeanSquare(complex, contours);
     EXPECT_TRUE(flips > 0 ? after < before : after == before) << before << ' ' << after;
     done += flips;
     std::vector<IdType> pointId, cellSlot;
@@ -144,7 +146,7 @@ TEST(FlipToContours, SurfacesComeCloserAndTheMeshStaysValid)
       EXPECT_LT(LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]), parameters.cosineFloor + 1e-9);
     }
     // It comes to rest: flips are not flipped back.
-    EXPECT_LE(FlipToContours(complex, mover, contours, parameters), flips / 2);
+    EXPECT_LE(FlipToContours(complex, mover, contours, limp, parameters), flips / 2);
   }
   EXPECT_GT(done, 50u);
 }
@@ -157,7 +159,33 @@ TEST(FlipToContours, NothingIsFlippedForLessThanTheGainAskedFor)
   ContourFlipParameters parameters;
   parameters.cosineFloor = std::cos(0.1);
   parameters.leastGain = 10.0;
-  EXPECT_EQ(FlipToContours(complex, mover, ContourSamples(complex, shape), parameters), 0u);
+  const SurfaceBending bending(complex, 0.05);
+  EXPECT_EQ(FlipToContours(complex, mover, ContourSamples(complex, shape), bending, parameters), 0u);
+}
+
+TEST(FlipToContours, SurfacesTurnLessWhereTheyAreStiff)
+{
+  const ContourShape shape = Rod(Inner);
+  MeshArrays         mesh = TwistedRod(0.12);
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    Vector3 &    x = mesh.points[p];
+    const double radius = std::hypot(x.x(), x.y());
+    x.head<2>() *= radius > 0.9 * Radius ? 1.0 + 0.03 * std::sin(static_cast<double>(7 * p)) : 1.0;
+  }
+  ContourFlipParameters parameters;
+  parameters.cosineFloor = std::cos(0.1);
+  parameters.leastGain = 0.5; // more than contours give
+  for (const bool stiff : { false, true })
+  {
+    TetraComplex         complex(mesh);
+    PointMover           mover(complex);
+    const SurfaceBending bending(complex, stiff ? 10.0 : 0.0);
+    const double         before = test::MeanTurn(complex);
+    const std::size_t    flips = FlipToContours(complex, mover, ContourSamples(complex, shape), bending, parameters);
+    EXPECT_EQ(flips > 0, stiff);
+    EXPECT_TRUE(!stiff || test::MeanTurn(complex) < 0.95 * before) << test::MeanTurn(complex) / before;
+  }
 }
 
 TEST(FlipToContours, IsPartOfTheQualityStageWhereContoursAreGiven)

@@ -314,7 +314,7 @@ TEST(MeshQualityFilter, RefusesBadParameters)
   refuses([](auto * f) { f->SetDistanceBound(-1.0); });
   refuses([](auto * f) { f->SetGradation(-0.1); });
   refuses([](auto * f) { f->SetSliverFactor(0.9); });
-  refuses([](auto * f) { f->SetStiffness(0.5); });
+  refuses([](auto * f) { f->SetStiffness(-0.1); });
   refuses([](auto * f) { f->SetInput(nullptr); });
 }
 

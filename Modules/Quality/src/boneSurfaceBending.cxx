@@ -1,0 +1,196 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSurfaceBending.h"
+
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace bone
+{
+namespace
+{
+/** Of the mean turn: above it turns count by themselves. */
+constexpr double SoftShare = 1.0 / 8;
+/** mm^2 and mm: of an edge and a triangle no shorter and no flatter is looked at. */
+constexpr double Tiny = 1e-9;
+
+double
+Turn(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+{
+  const Vector3 e = b - a, n = e.cross(c - a), m = (d - a).cross(e);
+  return std::atan2(n.cross(m).norm(), n.dot(m));
+}
+
+double
+Cotangent(const Vector3 & u, const Vector3 & v)
+{
+  return u.dot(v) / std::max(u.cross(v).norm(), Tiny);
+}
+
+/** Factors of the four points in the vector whose length is the turn times the edge's length. */
+std::array<double, 4>
+TurnFactors(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+{
+  const double ac = Cotangent(b - a, c - a), ad = Cotangent(b - a, d - a);
+  const double bc = Cotangent(a - b, c - b), bd = Cotangent(a - b, d - b);
+  return { { bc + bd, ac + ad, -ac - bc, -ad - bd } };
+}
+
+/** The system of SurfaceBending::Solve, by the points that are free. */
+class HingeSystem
+{
+public:
+  HingeSystem(const std::vector<Vector3> & points,
+              const std::vector<Vector3> & targets,
+              const std::vector<double> &  weights)
+    : m_Points(points)
+    , m_Place(points.size(), -1)
+  {
+    for (std::size_t p = 0; p < points.size(); ++p)
+    {
+      if (weights[p] > 0)
+      {
+        m_Place[p] = static_cast<int>(m_Free.size());
+        m_Free.push_back(static_cast<IdType>(p));
+      }
+    }
+    m_Right.resize(static_cast<Eigen::Index>(m_Free.size()), 3);
+    for (std::size_t i = 0; i < m_Free.size(); ++i)
+    {
+      const double weight = weights[m_Free[i]];
+      m_Entries.emplace_back(i, i, weight);
+      m_Right.row(static_cast<Eigen::Index>(i)) = weight * targets[m_Free[i]];
+    }
+  }
+
+  /** weight times the squared length of the sum of points times factors. */
+  void
+  Add(const std::array<IdType, 4> & points, const std::array<double, 4> & factors, double weight)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      for (int j = 0; j < 4 && m_Place[points[i]] >= 0; ++j)
+      {
+        const double value = weight * factors[i] * factors[j];
+        if (m_Place[points[j]] >= 0)
+        {
+          m_Entries.emplace_back(m_Place[points[i]], m_Place[points[j]], value);
+        }
+        else
+        {
+          m_Right.row(m_Place[points[i]]) -= value * m_Points[points[j]];
+        }
+      }
+    }
+  }
+
+  std::vector<Vector3>
+  Solve() const
+  {
+    std::vector<Vector3> result = m_Points;
+    if (m_Free.empty())
+    {
+      return result;
+    }
+    Eigen::SparseMatrix<double> matrix(m_Right.rows(), m_Right.rows());
+    matrix.setFromTriplets(m_Entries.begin(), m_Entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    const Eigen::MatrixX3d                                   solution = solver.solve(m_Right);
+    if (solver.info() == Eigen::Success && solution.allFinite())
+    {
+      for (std::size_t i = 0; i < m_Free.size(); ++i)
+      {
+        result[m_Free[i]] = solution.row(static_cast<Eigen::Index>(i));
+      }
+    }
+    return result;
+  }
+
+private:
+  const std::vector<Vector3> &        m_Points;
+  std::vector<int>                    m_Place; ///< of each point in the system, -1: it stays
+  std::vector<IdType>                 m_Free;
+  std::vector<Eigen::Triplet<double>> m_Entries;
+  Eigen::MatrixX3d                    m_Right;
+};
+} // namespace
+
+SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
+{
+  FindHinges(complex);
+  const auto &     x = complex.Points();
+  std::set<IdType> ends;
+  double           turns = 0.0, area = 0.0;
+  for (const Hinge & h : m_Hinges)
+  {
+    turns += Turn(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
+    const Vector3 edge = x[h[1]] - x[h[0]];
+    area += (edge.cross(x[h[2]] - x[h[0]]).norm() + edge.cross(x[h[3]] - x[h[0]]).norm()) / 6.0; // a triangle has three
+    ends.insert({ h[0], h[1] });
+  }
+  if (turns > 0)
+  {
+    m_SoftTurn = SoftShare * turns / static_cast<double>(m_Hinges.size());
+    m_Factor = stiffness * std::pow(area / static_cast<double>(ends.size()), 2);
+  }
+}
+
+void
+SurfaceBending::FindHinges(const TetraComplex & complex)
+{
+  std::map<std::tuple<int, IdType, IdType>, std::vector<IdType>> corners;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
+      for (int k = 0; k < 3 && surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0; ++k)
+      {
+        const Id4 &  cell = complex.Cell(t);
+        const IdType a = cell[TetraFaces[i][k]], b = cell[TetraFaces[i][(k + 1) % 3]];
+        corners[{ surface, std::min(a, b), std::max(a, b) }].push_back(cell[TetraFaces[i][(k + 2) % 3]]);
+      }
+    }
+  }
+  for (const auto & [edge, opposite] : corners)
+  {
+    if (opposite.size() == 2)
+    {
+      m_Hinges.push_back({ { std::get<1>(edge), std::get<2>(edge), opposite[0], opposite[1] } });
+    }
+  }
+}
+
+double
+SurfaceBending::Softening(double turn) const
+{
+  return 1.0 / (1.0 + turn / m_SoftTurn);
+}
+
+double
+SurfaceBending::Energy(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d) const
+{
+  const double turn = Turn(a, b, c, d);
+  return m_Factor * turn * turn * Softening(turn);
+}
+
+std::vector<Vector3>
+SurfaceBending::Solve(const std::vector<Vector3> & points,
+                      const std::vector<Vector3> & targets,
+                      const std::vector<double> &  weights) const
+{
+  HingeSystem system(points, targets, weights);
+  for (const Hinge & h : m_Hinges)
+  {
+    const Vector3 &a = points[h[0]], &b = points[h[1]], &c = points[h[2]], &d = points[h[3]];
+    const double   squared = std::max((b - a).squaredNorm(), Tiny);
+    system.Add(h, TurnFactors(a, b, c, d), m_Factor * Softening(Turn(a, b, c, d)) / squared);
+  }
+  return system.Solve();
+}
+} // namespace bone

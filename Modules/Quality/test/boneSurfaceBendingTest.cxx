@@ -1,0 +1,172 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneSurfaceBending.h"
+
+#include "../../Core/test/boneTestBodies.h"
+#include "boneMeshQualityFilter.h"
+#include "boneMeshValidator.h"
+#include "boneSurfaceTurns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace bone;
+
+namespace
+{
+constexpr double Radius = 12.0;
+
+/** A rod of two regions, the points of its outside moved in and out by up to `noise`. */
+MeshArrays
+RoughRod(double noise, unsigned int seed)
+{
+  test::TubeShape shape;
+  shape.rings = { 1, 2 };
+  shape.radius = Radius;
+  shape.bend = 0.0;
+  shape.jitter = 0.0;
+  MeshArrays                             mesh = test::MakeTube(shape);
+  std::mt19937                           random(seed);
+  std::uniform_real_distribution<double> move(-noise, noise);
+  for (Vector3 & x : mesh.points)
+  {
+    const double radius = std::hypot(x.x(), x.y());
+    if (radius > 0.9 * Radius)
+    {
+      x.head<2>() *= 1.0 + move(random) / radius;
+    }
+  }
+  return mesh;
+}
+
+ContourStack::Pointer
+RodContours()
+{
+  constexpr int                around = 96;
+  const double                 turn = 2.0 * std::acos(-1.0) / around;
+  ContourStack::SliceContainer slices;
+  for (double z = 0.0; z <= 22.0; z += 0.5)
+  {
+    slices.emplace_back();
+    slices.back().origin = Vector3(0, 0, z);
+    Contour contour;
+    contour.region = Region::Cortical;
+    for (int i = 0; i < around; ++i)
+    {
+      contour.points.push_back(Vector3(Radius * std::cos(i * turn), Radius * std::sin(i * turn), z));
+    }
+    slices.back().contours.push_back(contour);
+  }
+  auto stack = ContourStack::New();
+  stack->SetSlices(slices);
+  return stack;
+}
+
+/** Weight 1 for points inside surfaces. */
+std::vector<double>
+Weights(const TetraComplex & complex)
+{
+  std::vector<double> weights;
+  for (std::size_t p = 0; p < complex.Points().size(); ++p)
+  {
+    weights.push_back(complex.Dimension(static_cast<IdType>(p)) == 2 ? 1.0 : 0.0);
+  }
+  return weights;
+}
+} // namespace
+
+TEST(SurfaceBending, TheEnergyIsThatOfTheTurn)
+{
+  const TetraComplex   complex(RoughRod(0.3, 1));
+  const SurfaceBending bending(complex, 0.1);
+  const Vector3        a(0, 0, 0), b(0, 2, 0), c(1, 1, 0);
+  const auto           at = [&](double turn, double size) {
+    return bending.Energy(size * a, size * b, size * c, size * Vector3(-std::cos(turn), 1, std::sin(turn)));
+  };
+  EXPECT_NEAR(at(0.0, 1.0), 0.0, 1e-12);
+  EXPECT_NEAR(at(0.3, 1.0), at(-0.3, 1.0), 1e-9 * at(0.3, 1.0));
+  EXPECT_NEAR(at(0.3, 1.0), at(0.3, 5.0), 1e-9 * at(0.3, 1.0));
+  // Small turns by their squares, large ones by themselves.
+  EXPECT_NEAR(at(2e-5, 1.0) / at(1e-5, 1.0), 4.0, 0.01);
+  EXPECT_LT(at(2.0, 1.0) / at(1.0, 1.0), 2.2);
+  EXPECT_EQ(SurfaceBending(complex, 0.0).Energy(a, b, c, Vector3(0, 1, 1)), 0.0);
+}
+
+TEST(SurfaceBending, PointsGoToTheirTargetsWithoutStiffnessAndStayWithoutWeight)
+{
+  const TetraComplex   complex(RoughRod(0.3, 2));
+  std::vector<double>  weights = Weights(complex);
+  std::vector<Vector3> targets = complex.Points();
+  for (std::size_t p = 0; p < targets.size(); ++p)
+  {
+    weights[p] = p % 3 == 0 ? 0.0 : weights[p];
+    targets[p] += Vector3(0.1, -0.2, 0.05 * static_cast<double>(p % 7));
+  }
+  const auto limp = SurfaceBending(complex, 0.0).Solve(complex.Points(), targets, weights);
+  const auto stiff = SurfaceBending(complex, 1.0).Solve(complex.Points(), targets, weights);
+  for (std::size_t p = 0; p < targets.size(); ++p)
+  {
+    EXPECT_LT((limp[p] - (weights[p] > 0 ? targets : complex.Points())[p]).norm(), 1e-9);
+    EXPECT_TRUE(weights[p] > 0 || stiff[p] == complex.Points()[p]);
+  }
+}
+
+TEST(SurfaceBending, SmoothsWhatIsRoughWithoutShrinkingIt)
+{
+  for (unsigned int seed = 1; seed <= 5; ++seed)
+  {
+    MeshArrays           mesh = RoughRod(0.4, seed);
+    const TetraComplex   rough(mesh);
+    const SurfaceBending bending(rough, 1.0);
+    const auto           made = bending.Solve(rough.Points(), rough.Points(), Weights(rough));
+    double               before = 0.0, after = 0.0, mean = 0.0;
+    int                  count = 0;
+    for (std::size_t p = 0; p < made.size(); ++p)
+    {
+      if (rough.Dimension(static_cast<IdType>(p)) == 2 && mesh.points[p].head<2>().norm() > 0.9 * Radius)
+      {
+        before += std::abs(mesh.points[p].head<2>().norm() - Radius);
+        after += std::abs(made[p].head<2>().norm() - Radius);
+        mean += made[p].head<2>().norm();
+        ++count;
+      }
+    }
+    mesh.points = made;
+    EXPECT_LT(test::MeanTurn(TetraComplex(mesh)), 0.7 * test::MeanTurn(rough)) << seed;
+    EXPECT_LT(after, 0.7 * before) << seed;
+    EXPECT_NEAR(mean / count, Radius, 0.1) << seed;
+  }
+}
+
+TEST(SurfaceBending, AStifferSurfaceTurnsLessAndStaysOnTheContours)
+{
+  double turn[2], distance[2];
+  for (const bool stiff : { false, true })
+  {
+    const auto mesh = DensityMesh<double>::New();
+    mesh->SetArrays(RoughRod(0.4, 3));
+    auto filter = MeshQualityFilter<DensityMesh<double>>::New();
+    filter->SetInput(mesh);
+    filter->SetContours(RodContours());
+    filter->SetStiffness(stiff ? 0.05 : 0.0);
+    filter->Update();
+    const MeshArrays & made = filter->GetOutput()->GetArrays();
+    EXPECT_TRUE(ValidateMesh(made).IsValid());
+    const TetraComplex complex(made);
+    turn[stiff] = test::MeanTurn(complex);
+    distance[stiff] = 0.0;
+    for (std::size_t p = 0; p < made.points.size(); ++p)
+    {
+      const double radius = made.points[p].head<2>().norm();
+      if (complex.Dimension(static_cast<IdType>(p)) == 2 && radius > 0.9 * Radius)
+      {
+        distance[stiff] = std::max(distance[stiff], std::abs(radius - Radius));
+      }
+    }
+  }
+  EXPECT_LT(turn[1], 0.97 * turn[0]);
+  EXPECT_LT(distance[1], 0.5);
+}

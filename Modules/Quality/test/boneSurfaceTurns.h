@@ -1,0 +1,61 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSurfaceTurns_h
+#define boneSurfaceTurns_h
+
+#include "boneTetraComplex.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace bone
+{
+namespace test
+{
+/** Mean angle (rad) between neighbouring triangles of the boundary that is not cut flat. */
+inline double
+MeanTurn(const TetraComplex & complex)
+{
+  std::map<std::pair<IdType, IdType>, std::vector<Vector3>> normals;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
+      if (surface < 0 || !complex.Surfaces().surfaces[surface].IsBoundary() ||
+          complex.Surfaces().surfaces[surface].flat >= 0)
+      {
+        continue;
+      }
+      IdType v[3];
+      for (int k = 0; k < 3; ++k)
+      {
+        v[k] = complex.Cell(t)[TetraFaces[i][k]];
+      }
+      const auto &  x = complex.Points();
+      const Vector3 normal = (x[v[1]] - x[v[0]]).cross(x[v[2]] - x[v[0]]).normalized();
+      for (int k = 0; k < 3; ++k)
+      {
+        normals[std::minmax(v[k], v[(k + 1) % 3])].push_back(normal);
+      }
+    }
+  }
+  double sum = 0.0;
+  int    count = 0;
+  for (const auto & edge : normals)
+  {
+    if (edge.second.size() == 2)
+    {
+      sum += std::atan2(edge.second[0].cross(edge.second[1]).norm(), edge.second[0].dot(edge.second[1]));
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+} // namespace test
+} // namespace bone
+
+#endif
