@@ -554,6 +554,27 @@ TEST(MeshRadiograph, CellsAtAnyDistanceFromTheSourceKeepTheirAccuracy)
   }
 }
 
+TEST(MeshRadiograph, CellsFarWiderThanTheDetectorKeepTheirAccuracy)
+{
+  // Up to half a million pixels: powers of their number do not fit single precision.
+  auto mesh = Box({ { 1, 1, 1 } }, 0);
+  for (int degree : { 3, 8 })
+  {
+    test::SetPowers(
+      mesh,
+      [degree](std::size_t) { return degree; },
+      { test::Affine{ 0.6, Vector3(0.02, 0.01, -0.015) }, test::Affine{ 0.3, Vector3(-0.01, 0.02, 0.02) } });
+    for (double share : { 0.1, 1e-3, 1e-4 })
+    {
+      View          view = Oblique(false, 24);
+      const Vector2 half = 0.5 * (1.0 - share) * Vector2(view.size[0] - 1, view.size[1] - 1).cwiseProduct(view.spacing);
+      view.detectorOrigin += half.x() * view.detectorU + half.y() * view.detectorV;
+      view.spacing *= share;
+      EXPECT_LT(Difference(Project(mesh, view), Walk(mesh, view)), 1e-5) << degree << ' ' << share;
+    }
+  }
+}
+
 TEST(MeshRadiograph, CellsOfOneRowAndManyColumnsOrTheReverseKeepTheirAccuracy)
 {
   auto mesh = Box({ { 2, 2, 2 } }, 0);
