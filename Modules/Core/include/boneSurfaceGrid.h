@@ -13,6 +13,10 @@ namespace bone
 {
 using TriangleIds = std::array<IdType, 3>;
 
+/** The same triangle, its ids ascending. */
+TriangleIds
+Ascending(TriangleIds ids);
+
 /** \brief Whether two triangles, given by point ids, meet elsewhere than in the points and edges they share by id.
  *
  * Exact; touching counts. Two triangles on the same three points meet. */

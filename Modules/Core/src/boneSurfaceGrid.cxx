@@ -13,15 +13,15 @@
 
 namespace bone
 {
-namespace
-{
 TriangleIds
-Sorted(TriangleIds triangle)
+Ascending(TriangleIds ids)
 {
-  std::sort(triangle.begin(), triangle.end());
-  return triangle;
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
+namespace
+{
 bool
 Has(const TriangleIds & t, IdType p)
 {
@@ -237,7 +237,7 @@ void
 SurfaceGrid::Insert(const TriangleIds & triangle, const std::vector<Vector3> & points)
 {
   ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
-    m_Cells[key].push_back(Sorted(triangle));
+    m_Cells[key].push_back(Ascending(triangle));
     return false;
   });
 }
@@ -250,7 +250,7 @@ SurfaceGrid::Erase(const TriangleIds & triangle, const std::vector<Vector3> & po
     if (cell != m_Cells.end())
     {
       auto &     content = cell->second;
-      const auto at = std::find(content.begin(), content.end(), Sorted(triangle));
+      const auto at = std::find(content.begin(), content.end(), Ascending(triangle));
       if (at != content.end())
       {
         *at = content.back();

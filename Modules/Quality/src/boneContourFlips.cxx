@@ -14,13 +14,6 @@ namespace bone
 {
 namespace
 {
-TriangleIds
-Ascending(TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 using Samples = std::vector<const ContourShape::Sample *>;
 
 class ContourFlipper

@@ -8,16 +8,6 @@
 
 namespace bone
 {
-namespace
-{
-TriangleIds
-Ascending(TriangleIds ids)
-{
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-} // namespace
-
 SurfaceBound::SurfaceBound(const TetraComplex & complex, const SurfaceTarget & first, double bound)
   : m_First(first)
   , m_SquaredBound(bound * bound)

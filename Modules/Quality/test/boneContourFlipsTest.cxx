@@ -7,7 +7,7 @@
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"
-#include "boneSurfaceTurns.h"
+#include "boneQualityTestBodies.h"
 #include "boneTetraFlips.h"
 
 #include <gtest/gtest.h>
@@ -39,37 +39,10 @@ TwistedRod(double twist)
   return mesh;
 }
 
-/** Contours of a rod, with `inner` (where positive) as the radius of its second region. */
-ContourStack::Pointer
-RodContours(double inner)
-{
-  constexpr int                around = 96;
-  const double                 turn = 2.0 * std::acos(-1.0) / around;
-  ContourStack::SliceContainer slices;
-  for (double z = 0.0; z <= 22.0; z += 0.5)
-  {
-    slices.emplace_back();
-    slices.back().origin = Vector3(0, 0, z);
-    for (const double radius : { Radius, inner })
-    {
-      Contour contour;
-      contour.region = radius == Radius ? Region::Cortical : Region::Spongy;
-      for (int i = 0; i < around; ++i)
-      {
-        contour.points.push_back(Vector3(radius * std::cos(i * turn), radius * std::sin(i * turn), z));
-      }
-      slices.back().contours.push_back(contour);
-    }
-  }
-  auto stack = ContourStack::New();
-  stack->SetSlices(slices);
-  return stack;
-}
-
 ContourShape
 Rod(double inner)
 {
-  return ContourShape(*RodContours(inner));
+  return ContourShape(*test::RodContours(Radius, inner));
 }
 
 /** Mean squared distance of contours from the surfaces they belong to, mm^2. */
@@ -197,7 +170,7 @@ TEST(FlipToContours, IsPartOfTheQualityStageWhereContoursAreGiven)
     auto filter = MeshQualityFilter<DensityMesh<double>>::New();
     filter->SetInput(mesh);
     filter->SetRounds(1);
-    filter->SetContours(with ? RodContours(Inner).GetPointer() : nullptr);
+    filter->SetContours(with ? test::RodContours(Radius, Inner).GetPointer() : nullptr);
     filter->Update();
     EXPECT_EQ(filter->GetReport().contourFlips > 0, with);
     const auto validation = ValidateMesh(filter->GetOutput()->GetArrays());

@@ -6,7 +6,7 @@
 #include "../../Core/test/boneTestBodies.h"
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
-#include "boneSurfaceTurns.h"
+#include "boneQualityTestBodies.h"
 
 #include <gtest/gtest.h>
 
@@ -40,29 +40,6 @@ RoughRod(double noise, unsigned int seed)
     }
   }
   return mesh;
-}
-
-ContourStack::Pointer
-RodContours()
-{
-  constexpr int                around = 96;
-  const double                 turn = 2.0 * std::acos(-1.0) / around;
-  ContourStack::SliceContainer slices;
-  for (double z = 0.0; z <= 22.0; z += 0.5)
-  {
-    slices.emplace_back();
-    slices.back().origin = Vector3(0, 0, z);
-    Contour contour;
-    contour.region = Region::Cortical;
-    for (int i = 0; i < around; ++i)
-    {
-      contour.points.push_back(Vector3(Radius * std::cos(i * turn), Radius * std::sin(i * turn), z));
-    }
-    slices.back().contours.push_back(contour);
-  }
-  auto stack = ContourStack::New();
-  stack->SetSlices(slices);
-  return stack;
 }
 
 /** Weight 1 for points inside surfaces. */
@@ -150,7 +127,7 @@ TEST(SurfaceBending, AStifferSurfaceTurnsLessAndStaysOnTheContours)
     mesh->SetArrays(RoughRod(0.4, 3));
     auto filter = MeshQualityFilter<DensityMesh<double>>::New();
     filter->SetInput(mesh);
-    filter->SetContours(RodContours());
+    filter->SetContours(test::RodContours(Radius));
     filter->SetStiffness(stiff ? 0.05 : 0.0);
     filter->Update();
     const MeshArrays & made = filter->GetOutput()->GetArrays();

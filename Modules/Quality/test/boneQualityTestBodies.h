@@ -1,12 +1,14 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#ifndef boneSurfaceTurns_h
-#define boneSurfaceTurns_h
+#ifndef boneQualityTestBodies_h
+#define boneQualityTestBodies_h
 
+#include "boneContourStack.h"
 #include "boneTetraComplex.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -15,6 +17,36 @@ namespace bone
 {
 namespace test
 {
+/** Contours of a rod along z, every half millimetre to 22 mm; with an `inner` radius, of its second region too. */
+inline ContourStack::Pointer
+RodContours(double radius, double inner = 0.0)
+{
+  constexpr int                around = 96;
+  const double                 turn = 2.0 * std::acos(-1.0) / around;
+  ContourStack::SliceContainer slices;
+  for (double z = 0.0; z <= 22.0; z += 0.5)
+  {
+    slices.emplace_back();
+    slices.back().origin = Vector3(0, 0, z);
+    for (const double r : { radius, inner })
+    {
+      Contour contour;
+      contour.region = r == radius ? Region::Cortical : Region::Spongy;
+      for (int i = 0; i < around; ++i)
+      {
+        contour.points.push_back(Vector3(r * std::cos(i * turn), r * std::sin(i * turn), z));
+      }
+      if (r > 0)
+      {
+        slices.back().contours.push_back(contour);
+      }
+    }
+  }
+  auto stack = ContourStack::New();
+  stack->SetSlices(slices);
+  return stack;
+}
+
 /** Mean angle (rad) between neighbouring triangles of the boundary that is not cut flat. */
 inline double
 MeanTurn(const TetraComplex & complex)
