@@ -8,8 +8,6 @@
 #include "bonePointMover.h"
 #include "boneSurfaceBending.h"
 
-#include <functional>
-
 namespace bone
 {
 struct ContourFlipParameters
@@ -25,14 +23,13 @@ struct ContourFlipParameters
  * nothing that angles tell (data-dependent triangulation: N. Dyn, D. Levin, S. Rippa, IMA J. Numer. Anal. 10, 1990).
  * What falls is the sum of the squared distances of the contours' points that belong to the two triangles, times the
  * areas that they stand for, and of the bending of the five edges; it must fall by `leastGain` times these areas. The
- * mover's bound holds. `changed` is called with the cells that came. Returns the number of flips. */
+ * mover's bound holds. Returns the number of flips. */
 std::size_t
-FlipToContours(TetraComplex &                                           complex,
-               PointMover &                                             mover,
-               const ContourSamples &                                   contours,
-               const SurfaceBending &                                   bending,
-               const ContourFlipParameters &                            parameters,
-               const std::function<void(const std::vector<IdType> &)> & changed = {});
+FlipToContours(TetraComplex &                complex,
+               PointMover &                  mover,
+               const ContourSamples &        contours,
+               const SurfaceBending &        bending,
+               const ContourFlipParameters & parameters);
 } // namespace bone
 
 #endif

@@ -48,14 +48,14 @@ public:
     return edges;
   }
 
-  /** The cells that came; none where the edge was not flipped. */
-  std::vector<IdType>
+  /** Whether the edge was flipped. */
+  bool
   Flip(IdType a, IdType b)
   {
     const auto corners = Corners(a, b);
     if (!corners)
     {
-      return {};
+      return false;
     }
     const auto [c, d] = *corners;
     const Pair before{ { Ascending({ a, b, c }), Ascending({ a, b, d }) } };
@@ -64,14 +64,14 @@ public:
     samples.insert(samples.end(), m_Samples[before[1]].begin(), m_Samples[before[1]].end());
     if (!IsBetter(samples, { { a, b, c, d } }))
     {
-      return {};
+      return false;
     }
     const SurfaceFlip plan = PlanSurfaceFlip(m_Complex, a, b, m_Parameters.cosineFloor);
     const int         f = plan.surface;
     if (plan.outcome != MeshOperation::Done ||
         !m_Mover.ReplaceSurface({ { { a, b, c }, f }, { { a, b, d }, f } }, { { { a, c, d }, f }, { { b, c, d }, f } }))
     {
-      return {};
+      return false;
     }
     m_Samples.erase(before[0]);
     m_Samples.erase(before[1]);
@@ -80,7 +80,8 @@ public:
       const bool second = SquaredDistance(*sample, after[1]) < SquaredDistance(*sample, after[0]);
       m_Samples[after[second]].push_back(sample);
     }
-    return m_Complex.ReplaceAcross(plan.removed, plan.created, plan.regions, plan.surface);
+    m_Complex.ReplaceAcross(plan.removed, plan.created, plan.regions, plan.surface);
+    return true;
   }
 
 private:
@@ -166,26 +167,17 @@ private:
 } // namespace
 
 std::size_t
-FlipToContours(TetraComplex &                                           complex,
-               PointMover &                                             mover,
-               const ContourSamples &                                   contours,
-               const SurfaceBending &                                   bending,
-               const ContourFlipParameters &                            parameters,
-               const std::function<void(const std::vector<IdType> &)> & changed)
+FlipToContours(TetraComplex &                complex,
+               PointMover &                  mover,
+               const ContourSamples &        contours,
+               const SurfaceBending &        bending,
+               const ContourFlipParameters & parameters)
 {
   ContourFlipper flipper(complex, mover, contours, bending, parameters);
   std::size_t    count = 0;
   for (const auto & [a, b] : flipper.Edges())
   {
-    const std::vector<IdType> cells = flipper.Flip(a, b);
-    if (!cells.empty())
-    {
-      ++count;
-      if (changed)
-      {
-        changed(cells);
-      }
-    }
+    count += flipper.Flip(a, b) ? 1 : 0;
   }
   return count;
 }
