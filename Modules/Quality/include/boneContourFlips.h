@@ -4,9 +4,8 @@
 #ifndef boneContourFlips_h
 #define boneContourFlips_h
 
-#include "boneContourSamples.h"
 #include "bonePointMover.h"
-#include "boneSurfaceBending.h"
+#include "boneSurfaceEnergy.h"
 
 namespace bone
 {
@@ -21,14 +20,12 @@ struct ContourFlipParameters
  *
  * Four points of a curved surface are two pairs of triangles, one along a hollow and one across it; which is right is
  * nothing that angles tell (data-dependent triangulation: N. Dyn, D. Levin, S. Rippa, IMA J. Numer. Anal. 10, 1990).
- * What falls is the sum of the squared distances of the contours' points that belong to the two triangles, times the
- * areas that they stand for, and of the bending of the five edges; it must fall by `leastGain` times these areas. The
- * mover's bound holds. Returns the number of flips. */
+ * What falls is the \ref SurfaceEnergy; it must fall by `leastGain` times the areas that the contours' points of the
+ * two triangles stand for. The mover's bound holds. Returns the number of flips. */
 std::size_t
 FlipToContours(TetraComplex &                complex,
                PointMover &                  mover,
-               const ContourSamples &        contours,
-               const SurfaceBending &        bending,
+               SurfaceEnergy &               energy,
                const ContourFlipParameters & parameters);
 } // namespace bone
 

@@ -30,10 +30,12 @@ public:
     TriangleIds                  triangle; ///< outward from the cell that carries it
     Vector3                      foot;     ///< on the triangle
     Vector3                      normal;   ///< unit, of the triangle
-    double                       weight;   ///< area of the surface that the point stands for, mm^2
+    double                       weight;   ///< mm^2, see FindMatches
   };
 
-  /** Points of contours near surfaces that look the same way; contours that the mesh has left out find none. */
+  /** Points of contours near surfaces that look the same way; contours that the mesh has left out find none. A match
+   * counts for length of contour times distance of slices, over the squared sine of the angle between surface and
+   * slice: what should be small is the distance within the slice, where the surface may be far though it is near. */
   std::vector<Match>
   FindMatches(const TetraComplex & complex) const;
 

@@ -18,15 +18,15 @@ struct ImprovementParameters
   int    rounds{ 4 };             ///< of smoothing, flips, repair and optimisation
   int    optimizationPasses{ 2 }; ///< a round
   double targetAngle{ 0.44 };     ///< cells below are flipped, and their inner points optimised
-  double repairAngle{ 0.35 };     ///< cells below have surface edges flipped and edges collapsed
+  double repairAngle{ 0.28 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
   double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
-  int    fitPasses{ 4 };          ///< of fitting surfaces, flipping their edges and smoothing inside, at the end
-  int    fitSteps{ 2 };           ///< a pass
+  int    fitPasses{ 5 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
+  double sharpAngle{ 0.7 };       ///< edges that turn by more are collapsed where contours do not ask for them
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
-  double stiffness{ 0.05 };       ///< of surfaces in that fit, see SurfaceBending
+  double stiffness{ 0.1 };        ///< of surfaces in that fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
 };
@@ -39,6 +39,7 @@ struct ImprovementReport
   std::size_t     splits{ 0 };       ///< edges inside regions halved
   std::size_t     collapses{ 0 };    ///< of short edges inside regions
   std::size_t     contourFlips{ 0 }; ///< of surface edges, towards contours
+  std::size_t     sharpEdges{ 0 };   ///< of surfaces, collapsed
   std::size_t     optimized{ 0 };    ///< points moved by optimisation
 };
 
@@ -50,9 +51,10 @@ struct ImprovementReport
  *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
  *    Last, cells below surfaceAngle are looked after once more with a wider bound of surfaces (\ref SurfaceBound).
  * 3. In turn: boundary and interfaces are fitted to the contours that the mesh was made of, if they are given, else to
- *    the first surfaces (\ref FitSurfaces); surface edges are flipped where contours lie closer to the other two
- *    triangles or these turn less (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the worst
- *    cells' inner points are optimised, and the regions get their volumes back once more.
+ *    the first surfaces (\ref FitSurfaces); sharp edges that contours do not ask for are collapsed (\ref
+ *    CollapseSharpEdges), surface edges flipped where contours lie closer to the other two triangles or these turn less
+ *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the worst cells' inner points are
+ *    optimised, and the regions get their volumes back once more.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

@@ -4,6 +4,7 @@
 #ifndef boneSurfaceBending_h
 #define boneSurfaceBending_h
 
+#include "boneSurfaceGrid.h"
 #include "boneTetraComplex.h"
 
 #include <array>
@@ -11,6 +12,10 @@
 
 namespace bone
 {
+/** Angle between the triangles (a, b, c) and (b, a, d), 0 where they are flat, rad. */
+double
+TurnAt(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d);
+
 /** \class SurfaceBending
  * \brief The edges of a mesh's surfaces as hinges that resist turning.
  *
@@ -28,16 +33,26 @@ public:
   double
   Energy(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d) const;
 
-  /** \brief Where points go that springs draw to targets and hinges hold to each other.
+  /** Draws a place on a triangle to a target. */
+  struct Spring
+  {
+    TriangleIds           points;
+    std::array<double, 3> shares; ///< barycentric coordinates of the place
+    double                weight; ///< mm^2
+    Vector3               target;
+  };
+
+  /** \brief Where points go that springs draw and hinges hold to each other.
    *
-   * Minimises the sum of weight |y - target|^2 and of the energies. To first order the turn is a linear function of the
-   * four points of an edge (M. Bergou, M. Wardetzky, D. Harmon, D. Zorin, E. Grinspun, "A quadratic bending model for
-   * inextensible surfaces", Symposium on Geometry Processing 2006): one linear system, in which the softening is that
-   * of the turns as they are. Points whose weight (mm^2) is 0 stay. */
+   * Minimises the sum of weight |place - target|^2 and of the energies. To first order the turn is a linear function of
+   * the four points of an edge (M. Bergou, M. Wardetzky, D. Harmon, D. Zorin, E. Grinspun, "A quadratic bending model
+   * for inextensible surfaces", Symposium on Geometry Processing 2006): one linear system, in which the softening is
+   * that of the turns as they are. A tenth of the weights holds points where they are, as springs alone need not say
+   * where each point goes. Points that are not free, and those without springs, stay. */
   std::vector<Vector3>
   Solve(const std::vector<Vector3> & points,
-        const std::vector<Vector3> & targets,
-        const std::vector<double> &  weights) const;
+        const std::vector<char> &    isFree,
+        const std::vector<Spring> &  springs) const;
 
 private:
   using Hinge = std::array<IdType, 4>; ///< the edge, then the opposite corners

@@ -11,20 +11,18 @@ namespace bone
 {
 struct SurfaceFitParameters
 {
-  int    steps{ 2 };
-  double stiffness{ 0.05 };    ///< of edges against turning, see SurfaceBending; 0: none
+  int    steps{ 1 };
+  double stiffness{ 0.1 };     ///< of edges against turning, see SurfaceBending; 0: none
   double cosineFloor{ 0.985 }; ///< of the dihedral angle that no move may go below, unless it was below
 };
 
 /** \brief Moves points of boundary and interfaces until the surfaces lie on a target in the mean, and turn little.
  *
- * Points on a curved surface leave the triangles between them inside it. Here each point is drawn by the mean, weighted
- * by its shape function, of the distances from the triangles at it to the target along their normals, and the surfaces
- * resist bending (\ref SurfaceBending): the fixed point is a least-squares fit of the triangles to the target by hinged
- * plates. The target is the contours on
- * their slices, where they are given, and with a small weight their shape between slices; without them, and where they
- * are not near by, the first surfaces. Contours beside an edge also draw its points along the surface. Points of
- * curves, corners and flat cuts stay, and each move is one of the mover. Returns the number of moves. */
+ * Points on a curved surface leave the triangles between them inside it. Here springs draw places on the triangles to
+ * the target, and the surfaces resist bending (\ref SurfaceBending): the fixed point is a least-squares fit of the
+ * triangles to the target by hinged plates. The target is the contours on their slices, where they are given, and with
+ * a small weight their shape between slices; without them, and where they are not near by, the first surfaces. Points
+ * of curves, corners and flat cuts stay, and each move is one of the mover. Returns the number of moves. */
 std::size_t
 FitSurfaces(TetraComplex &               complex,
             PointMover &                 mover,

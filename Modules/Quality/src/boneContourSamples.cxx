@@ -11,7 +11,7 @@ constexpr double SamplesPerTriangle = 4.0;
 /** mm, of a point from its triangle. */
 constexpr double Farthest = 1.5;
 /** Cosine of the angle between the contour's normal and the triangle's. */
-constexpr double LeastSlope = 0.3;
+constexpr double LeastSlope = 0.1;
 
 /** A triangle of the surface of a body. */
 struct LevelTriangle
@@ -85,7 +85,7 @@ ContourSamples::FindMatches(const TetraComplex & complex) const
       const double          slope = face.sign * normal.dot(sample.outward);
       if (slope > LeastSlope)
       {
-        matches.push_back({ &sample, face.ids, nearest.point, normal, sample.weight / slope });
+        matches.push_back({ &sample, face.ids, nearest.point, normal, sample.weight / (slope * slope) });
       }
     }
   }

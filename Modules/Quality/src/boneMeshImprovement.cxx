@@ -5,6 +5,7 @@
 
 #include "boneContourFlips.h"
 #include "boneInteriorRefinement.h"
+#include "boneSharpEdges.h"
 #include "boneSurfaceFit.h"
 #include "boneVolumeKeeper.h"
 
@@ -139,13 +140,12 @@ private:
     for (int pass = 0; pass < m_Parameters.fitPasses; ++pass)
     {
       SurfaceFitParameters fit;
-      fit.steps = m_Parameters.fitSteps;
       fit.stiffness = m_Parameters.stiffness;
       fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
       FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
       if (m_Parameters.shape)
       {
-        FlipToContours();
+        ChangeEdges();
       }
       Smooth(SmoothingsInRound, SurfaceMotion::None);
       m_Optimizer.MarkAll();
@@ -156,15 +156,21 @@ private:
     m_Bound.SetBound(m_Parameters.distanceBound);
   }
 
+  /** Collapses and flips of surface edges by contours and turns. */
   void
-  FlipToContours()
+  ChangeEdges()
   {
+    const ContourSamples contours(m_Complex, *m_Parameters.shape);
+    const SurfaceBending bending(m_Complex, m_Parameters.stiffness);
+    SurfaceEnergy        energy(m_Complex, contours, bending);
+    SharpEdgeParameters  sharp;
+    sharp.angle = m_Parameters.sharpAngle;
+    sharp.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+    m_Report.sharpEdges += CollapseSharpEdges(m_Complex, m_Mover, m_Repair, energy, sharp);
     ContourFlipParameters flips;
     flips.leastGain = std::pow(m_Parameters.flipGain * m_Parameters.distanceBound, 2);
     flips.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-    const ContourSamples contours(m_Complex, *m_Parameters.shape);
-    const SurfaceBending bending(m_Complex, m_Parameters.stiffness);
-    m_Report.contourFlips += bone::FlipToContours(m_Complex, m_Mover, contours, bending, flips);
+    m_Report.contourFlips += FlipToContours(m_Complex, m_Mover, energy, flips);
   }
 
   /** What no change within the bound has mended may go farther, and the worst cells farther still. */

@@ -18,13 +18,8 @@ namespace
 constexpr double SoftShare = 1.0 / 8;
 /** mm^2 and mm: of an edge and a triangle no shorter and no flatter is looked at. */
 constexpr double Tiny = 1e-9;
-
-double
-Turn(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
-{
-  const Vector3 e = b - a, n = e.cross(c - a), m = (d - a).cross(e);
-  return std::atan2(n.cross(m).norm(), n.dot(m));
-}
+/** Of the weight that draws a point: what holds it where it is. */
+constexpr double Hold = 0.1;
 
 double
 Cotangent(const Vector3 & u, const Vector3 & v)
@@ -45,45 +40,65 @@ TurnFactors(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vecto
 class HingeSystem
 {
 public:
-  HingeSystem(const std::vector<Vector3> & points,
-              const std::vector<Vector3> & targets,
-              const std::vector<double> &  weights)
+  HingeSystem(const std::vector<Vector3> &                points,
+              const std::vector<char> &                   isFree,
+              const std::vector<SurfaceBending::Spring> & springs)
     : m_Points(points)
     , m_Place(points.size(), -1)
   {
+    std::vector<double> weights(points.size(), 0.0);
+    for (const auto & spring : springs)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        weights[spring.points[i]] += spring.weight * spring.shares[i];
+      }
+    }
     for (std::size_t p = 0; p < points.size(); ++p)
     {
-      if (weights[p] > 0)
+      if (isFree[p] && weights[p] > 0)
       {
         m_Place[p] = static_cast<int>(m_Free.size());
         m_Free.push_back(static_cast<IdType>(p));
       }
     }
-    m_Right.resize(static_cast<Eigen::Index>(m_Free.size()), 3);
-    for (std::size_t i = 0; i < m_Free.size(); ++i)
+    m_Right.setZero(static_cast<Eigen::Index>(m_Free.size()), 3);
+    for (IdType p : m_Free)
     {
-      const double weight = weights[m_Free[i]];
-      m_Entries.emplace_back(i, i, weight);
-      m_Right.row(static_cast<Eigen::Index>(i)) = weight * targets[m_Free[i]];
+      Add<1>({ p }, { 1.0 }, Hold * weights[p], points[p]);
+    }
+    for (const auto & spring : springs)
+    {
+      Add<3>(spring.points, spring.shares, spring.weight, spring.target);
     }
   }
 
-  /** weight times the squared length of the sum of points times factors. */
+  /** weight times the squared distance of the sum of points times factors from a target. */
+  template <std::size_t VCount>
   void
-  Add(const std::array<IdType, 4> & points, const std::array<double, 4> & factors, double weight)
+  Add(const std::array<IdType, VCount> & points,
+      const std::array<double, VCount> & factors,
+      double                             weight,
+      const Vector3 &                    target)
   {
-    for (int i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < VCount; ++i)
     {
-      for (int j = 0; j < 4 && m_Place[points[i]] >= 0; ++j)
+      const int row = m_Place[points[i]];
+      if (row < 0)
+      {
+        continue;
+      }
+      m_Right.row(row) += weight * factors[i] * target;
+      for (std::size_t j = 0; j < VCount; ++j)
       {
         const double value = weight * factors[i] * factors[j];
         if (m_Place[points[j]] >= 0)
         {
-          m_Entries.emplace_back(m_Place[points[i]], m_Place[points[j]], value);
+          m_Entries.emplace_back(row, m_Place[points[j]], value);
         }
         else
         {
-          m_Right.row(m_Place[points[i]]) -= value * m_Points[points[j]];
+          m_Right.row(row) -= value * m_Points[points[j]];
         }
       }
     }
@@ -120,6 +135,13 @@ private:
 };
 } // namespace
 
+double
+TurnAt(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+{
+  const Vector3 e = b - a, n = e.cross(c - a), m = (d - a).cross(e);
+  return std::atan2(n.cross(m).norm(), n.dot(m));
+}
+
 SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
 {
   FindHinges(complex);
@@ -128,7 +150,7 @@ SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
   double           turns = 0.0, area = 0.0;
   for (const Hinge & h : m_Hinges)
   {
-    turns += Turn(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
+    turns += TurnAt(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
     const Vector3 edge = x[h[1]] - x[h[0]];
     area += (edge.cross(x[h[2]] - x[h[0]]).norm() + edge.cross(x[h[3]] - x[h[0]]).norm()) / 6.0; // a triangle has three
     ends.insert({ h[0], h[1] });
@@ -175,21 +197,22 @@ SurfaceBending::Softening(double turn) const
 double
 SurfaceBending::Energy(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d) const
 {
-  const double turn = Turn(a, b, c, d);
+  const double turn = TurnAt(a, b, c, d);
   return m_Factor * turn * turn * Softening(turn);
 }
 
 std::vector<Vector3>
 SurfaceBending::Solve(const std::vector<Vector3> & points,
-                      const std::vector<Vector3> & targets,
-                      const std::vector<double> &  weights) const
+                      const std::vector<char> &    isFree,
+                      const std::vector<Spring> &  springs) const
 {
-  HingeSystem system(points, targets, weights);
+  HingeSystem system(points, isFree, springs);
   for (const Hinge & h : m_Hinges)
   {
     const Vector3 &a = points[h[0]], &b = points[h[1]], &c = points[h[2]], &d = points[h[3]];
     const double   squared = std::max((b - a).squaredNorm(), Tiny);
-    system.Add(h, TurnFactors(a, b, c, d), m_Factor * Softening(Turn(a, b, c, d)) / squared);
+    const double   stiffness = m_Factor * Softening(TurnAt(a, b, c, d)) / squared;
+    system.Add<4>(h, TurnFactors(a, b, c, d), stiffness, Vector3::Zero());
   }
   return system.Solve();
 }

@@ -19,15 +19,6 @@ constexpr double ShortestMove = 2e-3;
 /** Weight of what lies between slices, where contours are known, next to the contours themselves. */
 constexpr double WeightBetweenSlices = 0.1;
 
-struct Residuals
-{
-  std::vector<Vector3> normal; ///< #p, area-weighted
-  std::vector<double>  shift;  ///< #p, sum of weighted distances
-  std::vector<double>  weight; ///< #p
-  std::vector<Vector3> pull;   ///< #p, sum of weighted ways along the surface
-  double               shortest{ 0.0 };
-};
-
 using Barycentric = std::array<double, 3>;
 
 /** Samples of a triangle, of equal weight: three are exact for quadratic distances; next to contours one will do. */
@@ -51,15 +42,18 @@ ToShape(const ContourShape & shape, int level, const Vector3 & x, const Vector3 
   return -value->distance / slope;
 }
 
-Residuals
-MeasureTriangles(const TetraComplex & complex, const SurfaceTarget & target, const ContourShape * shape)
+using Springs = std::vector<SurfaceBending::Spring>;
+
+/** Springs from triangles to the shape between slices, or where there is none to the first surfaces.
+ * \param edge  the mean length of the triangles' edges. */
+Springs
+SpringsOfTriangles(const TetraComplex &  complex,
+                   const SurfaceTarget & target,
+                   const ContourShape *  shape,
+                   double &              edge)
 {
   const auto & x = complex.Points();
-  Residuals    r;
-  r.normal.assign(x.size(), Vector3::Zero());
-  r.shift.assign(x.size(), 0.0);
-  r.weight.assign(x.size(), 0.0);
-  r.pull.assign(x.size(), Vector3::Zero());
+  Springs      springs;
   const auto & samples = shape ? OneSample : ThreeSamples;
   const double share = (shape ? WeightBetweenSlices : 1.0) / static_cast<double>(samples.size());
   double       edges = 0.0;
@@ -73,81 +67,65 @@ MeasureTriangles(const TetraComplex & complex, const SurfaceTarget & target, con
       {
         continue;
       }
-      const Id4 &   c = complex.Cell(t);
-      const IdType  f[3] = { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] };
-      const Vector3 normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
-      const double  area = normal.norm();
+      const Id4 &       c = complex.Cell(t);
+      const TriangleIds f = { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] };
+      const Vector3     normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
+      const double      area = normal.norm();
       if (!(area > 0))
       {
         continue;
       }
       // Faces look outward from the cell that carries them, that of the smaller region: into the level at interfaces.
-      const bool    boundary = complex.Surfaces().surfaces[surface].IsBoundary();
-      const double  sign = boundary ? 1.0 : -1.0;
-      const int     level = boundary ? 1 : complex.Surfaces().surfaces[surface].inner;
-      const Vector3 outward = normal * (sign / area);
+      const bool   boundary = complex.Surfaces().surfaces[surface].IsBoundary();
+      const double sign = boundary ? 1.0 : -1.0;
+      const int    level = boundary ? 1 : complex.Surfaces().surfaces[surface].inner;
       edges += (x[f[1]] - x[f[0]]).norm();
       ++count;
       for (const Barycentric & sample : samples)
       {
         const Vector3 place = sample[0] * x[f[0]] + sample[1] * x[f[1]] + sample[2] * x[f[2]];
-        const auto    toShape = shape ? ToShape(*shape, level, place, outward) : std::nullopt;
+        const auto    toShape = shape ? ToShape(*shape, level, place, normal * (sign / area)) : std::nullopt;
         const double distance = toShape ? *toShape * sign : (target.Nearest(surface, place) - place).dot(normal) / area;
-        const double weight = share * area / 2.0;
-        for (int k = 0; k < 3; ++k)
-        {
-          r.shift[f[k]] += sample[k] * weight * distance;
-          r.weight[f[k]] += sample[k] * weight;
-        }
-      }
-      for (IdType p : f)
-      {
-        r.normal[p] += normal;
+        springs.push_back({ f, sample, share * area / 2.0, place + normal * (distance / area) });
       }
     }
   }
-  r.shortest = count > 0 ? ShortestMove * edges / static_cast<double>(count) : 0.0;
-  return r;
+  edge = count > 0 ? edges / static_cast<double>(count) : 0.0;
+  return springs;
 }
 
-/** Distances from triangles to the contours at them, and ways from their edges to contours beside them. */
+/** Springs from triangles to the points of contours that belong to them. */
 void
-MeasureContours(const TetraComplex & complex, const ContourSamples & contours, Residuals & r)
+AddContours(const TetraComplex & complex, const ContourSamples & contours, Springs & springs)
 {
   const auto & x = complex.Points();
   for (const ContourSamples::Match & match : contours.FindMatches(complex))
   {
     const TriangleIds & f = match.triangle;
-    const Vector3       way = match.sample->place - match.foot;
-    const double        distance = way.dot(match.normal);
     const double        area = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).dot(match.normal);
+    Barycentric         shares{};
     for (int k = 0; k < 3; ++k)
     {
       const Vector3 &a = x[f[(k + 1) % 3]], &b = x[f[(k + 2) % 3]];
-      const double   weight = match.weight * (a - match.foot).cross(b - match.foot).dot(match.normal) / area;
-      r.shift[f[k]] += weight * distance;
-      r.weight[f[k]] += weight;
-      r.pull[f[k]] += weight * (way - distance * match.normal);
+      shares[k] = (a - match.foot).cross(b - match.foot).dot(match.normal) / area;
     }
+    springs.push_back({ f, shares, match.weight, match.sample->place });
   }
 }
 
-/** Where distances and ways alone would bring the points; those that do not move get no weight. */
-std::vector<Vector3>
-FindTargets(const TetraComplex & complex, Residuals & r)
+/** Points within surfaces: those of curves, corners and flat cuts stay. */
+std::vector<char>
+FreePoints(const TetraComplex & complex, const Springs & springs)
 {
-  std::vector<Vector3> targets = complex.Points();
-  for (std::size_t p = 0; p < targets.size(); ++p)
+  std::vector<char> isFree(complex.Points().size(), 0);
+  for (const auto & spring : springs)
   {
-    const double length = r.normal[p].norm();
-    if (complex.Dimension(static_cast<IdType>(p)) != 2 || !(length > 0 && r.weight[p] > 0))
+    for (IdType p : spring.points)
     {
-      r.weight[p] = 0.0;
-      continue;
+      isFree[p] = complex.Dimension(p) == 2;
     }
-    targets[p] += (r.shift[p] / length * r.normal[p] + r.pull[p]) / r.weight[p];
   }
-  return targets;
+  return isFree;
 }
 } // namespace
 
@@ -164,20 +142,17 @@ FitSurfaces(TetraComplex &               complex,
   const SurfaceBending bending(complex, parameters.stiffness);
   for (int step = 0; step < parameters.steps; ++step)
   {
-    Residuals r = MeasureTriangles(complex, first, shape);
+    double  edge = 0.0;
+    Springs springs = SpringsOfTriangles(complex, first, shape, edge);
     if (contours)
     {
-      MeasureContours(complex, *contours, r);
+      AddContours(complex, *contours, springs);
     }
-    std::vector<Vector3> targets = FindTargets(complex, r);
-    if (parameters.stiffness > 0)
-    {
-      targets = bending.Solve(complex.Points(), targets, r.weight);
-    }
+    const auto targets = bending.Solve(complex.Points(), FreePoints(complex, springs), springs);
     for (IdType p = 0; p < static_cast<IdType>(targets.size()); ++p)
     {
       Vector3 move = targets[p] - complex.Points()[p];
-      for (int half = 0; half < halvings && r.weight[p] > 0 && move.norm() > r.shortest; ++half, move /= 2.0)
+      for (int half = 0; half < halvings && move.norm() > ShortestMove * edge; ++half, move /= 2.0)
       {
         if (mover.TryMove(p, complex.Points()[p] + move, parameters.cosineFloor) == MeshOperation::Done)
         {

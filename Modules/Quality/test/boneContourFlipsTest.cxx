@@ -103,8 +103,9 @@ TEST(FlipToContours, SurfacesComeCloserAndTheMeshStaysValid)
     ContourFlipParameters parameters;
     parameters.cosineFloor = std::cos(0.1);
     const SurfaceBending limp(complex, 0.0);
+    SurfaceEnergy        energy(complex, contours, limp);
     const double         before = MeanSquare(complex, contours);
-    const std::size_t    flips = FlipToContours(complex, mover, contours, limp, parameters);
+    const std::size_t    flips = FlipToContours(complex, mover, energy, parameters);
     const double         after = MeanSquare(complex, contours);
     EXPECT_TRUE(flips > 0 ? after < before : after == before) << before << ' ' << after;
     done += flips;
@@ -119,7 +120,7 @@ TEST(FlipToContours, SurfacesComeCloserAndTheMeshStaysValid)
       EXPECT_LT(LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]), parameters.cosineFloor + 1e-9);
     }
     // It comes to rest: flips are not flipped back.
-    EXPECT_LE(FlipToContours(complex, mover, contours, limp, parameters), flips / 2);
+    EXPECT_LE(FlipToContours(complex, mover, energy, parameters), flips / 2);
   }
   EXPECT_GT(done, 50u);
 }
@@ -132,8 +133,10 @@ TEST(FlipToContours, NothingIsFlippedForLessThanTheGainAskedFor)
   ContourFlipParameters parameters;
   parameters.cosineFloor = std::cos(0.1);
   parameters.leastGain = 10.0;
+  const ContourSamples contours(complex, shape);
   const SurfaceBending bending(complex, 0.05);
-  EXPECT_EQ(FlipToContours(complex, mover, ContourSamples(complex, shape), bending, parameters), 0u);
+  SurfaceEnergy        energy(complex, contours, bending);
+  EXPECT_EQ(FlipToContours(complex, mover, energy, parameters), 0u);
 }
 
 TEST(FlipToContours, SurfacesTurnLessWhereTheyAreStiff)
@@ -154,8 +157,10 @@ TEST(FlipToContours, SurfacesTurnLessWhereTheyAreStiff)
     TetraComplex         complex(mesh);
     PointMover           mover(complex);
     const SurfaceBending bending(complex, stiff ? 10.0 : 0.0);
+    const ContourSamples contours(complex, shape);
+    SurfaceEnergy        energy(complex, contours, bending);
     const double         before = test::MeanTurn(complex);
-    const std::size_t    flips = FlipToContours(complex, mover, ContourSamples(complex, shape), bending, parameters);
+    const std::size_t    flips = FlipToContours(complex, mover, energy, parameters);
     EXPECT_EQ(flips > 0, stiff);
     EXPECT_TRUE(!stiff || test::MeanTurn(complex) < 0.95 * before) << test::MeanTurn(complex) / before;
   }

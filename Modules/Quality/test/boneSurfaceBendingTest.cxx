@@ -42,16 +42,37 @@ RoughRod(double noise, unsigned int seed)
   return mesh;
 }
 
-/** Weight 1 for points inside surfaces. */
-std::vector<double>
-Weights(const TetraComplex & complex)
+std::vector<char>
+PointsWithinSurfaces(const TetraComplex & complex)
 {
-  std::vector<double> weights;
+  std::vector<char> within;
   for (std::size_t p = 0; p < complex.Points().size(); ++p)
   {
-    weights.push_back(complex.Dimension(static_cast<IdType>(p)) == 2 ? 1.0 : 0.0);
+    within.push_back(complex.Dimension(static_cast<IdType>(p)) == 2);
   }
-  return weights;
+  return within;
+}
+
+/** A spring for each corner of each triangle of the boundary, to where the corner is and `move`. */
+std::vector<SurfaceBending::Spring>
+CornerSprings(const TetraComplex & complex, const Vector3 & move = Vector3::Zero())
+{
+  std::vector<SurfaceBending::Spring> springs;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      for (int k = 0; k < 3 && complex.Carries(t, i); ++k)
+      {
+        const Id4 &           c = complex.Cell(t);
+        const TriangleIds     f = { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] };
+        std::array<double, 3> shares{};
+        shares[k] = 1.0;
+        springs.push_back({ f, shares, 0.2, complex.Points()[f[k]] + move });
+      }
+    }
+  }
+  return springs;
 }
 } // namespace
 
@@ -72,23 +93,52 @@ TEST(SurfaceBending, TheEnergyIsThatOfTheTurn)
   EXPECT_EQ(SurfaceBending(complex, 0.0).Energy(a, b, c, Vector3(0, 1, 1)), 0.0);
 }
 
-TEST(SurfaceBending, PointsGoToTheirTargetsWithoutStiffnessAndStayWithoutWeight)
+TEST(SurfaceBending, PointsGoToTheirSpringsWithoutStiffnessAndStayWithoutFreedom)
 {
-  const TetraComplex   complex(RoughRod(0.3, 2));
-  std::vector<double>  weights = Weights(complex);
-  std::vector<Vector3> targets = complex.Points();
-  for (std::size_t p = 0; p < targets.size(); ++p)
+  const TetraComplex complex(RoughRod(0.3, 2));
+  std::vector<char>  isFree = PointsWithinSurfaces(complex);
+  for (std::size_t p = 0; p < isFree.size(); p += 3)
   {
-    weights[p] = p % 3 == 0 ? 0.0 : weights[p];
-    targets[p] += Vector3(0.1, -0.2, 0.05 * static_cast<double>(p % 7));
+    isFree[p] = 0;
   }
-  const auto limp = SurfaceBending(complex, 0.0).Solve(complex.Points(), targets, weights);
-  const auto stiff = SurfaceBending(complex, 1.0).Solve(complex.Points(), targets, weights);
-  for (std::size_t p = 0; p < targets.size(); ++p)
+  const Vector3 move(0.1, -0.2, 0.05);
+  const auto    springs = CornerSprings(complex, move);
+  const auto    limp = SurfaceBending(complex, 0.0).Solve(complex.Points(), isFree, springs);
+  const auto    stiff = SurfaceBending(complex, 1.0).Solve(complex.Points(), isFree, springs);
+  const auto    alone = SurfaceBending(complex, 1.0).Solve(complex.Points(), isFree, {});
+  for (std::size_t p = 0; p < limp.size(); ++p)
   {
-    EXPECT_LT((limp[p] - (weights[p] > 0 ? targets : complex.Points())[p]).norm(), 1e-9);
-    EXPECT_TRUE(weights[p] > 0 || stiff[p] == complex.Points()[p]);
+    // A tenth of the weight holds each point.
+    const Vector3 & x = complex.Points()[p];
+    EXPECT_LT((limp[p] - x - (isFree[p] ? move / 1.1 : Vector3(0, 0, 0))).norm(), 1e-9);
+    EXPECT_TRUE(isFree[p] || stiff[p] == x);
+    EXPECT_EQ(alone[p], x);
   }
+}
+
+TEST(SurfaceBending, ASpringWithinATriangleBringsItsPlaceThere)
+{
+  const TetraComplex complex(RoughRod(0.3, 4));
+  auto               springs = CornerSprings(complex);
+  springs.resize(1);
+  springs[0].shares = { { 0.2, 0.3, 0.5 } };
+  const auto place = [&](const std::vector<Vector3> & x) {
+    Vector3 sum = Vector3::Zero();
+    for (int k = 0; k < 3; ++k)
+    {
+      sum += springs[0].shares[k] * x[springs[0].points[k]];
+    }
+    return sum;
+  };
+  const Vector3           before = place(complex.Points()), move(0.3, 0.1, -0.2);
+  const std::vector<char> all(complex.Points().size(), 1);
+  springs[0].target = before + move;
+  std::vector<Vector3> x = complex.Points();
+  for (int step = 0; step < 20; ++step)
+  {
+    x = SurfaceBending(complex, 0.0).Solve(x, all, springs);
+  }
+  EXPECT_LT((place(x) - before - move).norm(), 1e-6);
 }
 
 TEST(SurfaceBending, SmoothsWhatIsRoughWithoutShrinkingIt)
@@ -98,7 +148,7 @@ TEST(SurfaceBending, SmoothsWhatIsRoughWithoutShrinkingIt)
     MeshArrays           mesh = RoughRod(0.4, seed);
     const TetraComplex   rough(mesh);
     const SurfaceBending bending(rough, 1.0);
-    const auto           made = bending.Solve(rough.Points(), rough.Points(), Weights(rough));
+    const auto           made = bending.Solve(rough.Points(), PointsWithinSurfaces(rough), CornerSprings(rough));
     double               before = 0.0, after = 0.0, mean = 0.0;
     int                  count = 0;
     for (std::size_t p = 0; p < made.size(); ++p)
@@ -128,7 +178,7 @@ TEST(SurfaceBending, AStifferSurfaceTurnsLessAndStaysOnTheContours)
     auto filter = MeshQualityFilter<DensityMesh<double>>::New();
     filter->SetInput(mesh);
     filter->SetContours(test::RodContours(Radius));
-    filter->SetStiffness(stiff ? 0.05 : 0.0);
+    filter->SetStiffness(stiff ? 0.1 : 0.0);
     filter->Update();
     const MeshArrays & made = filter->GetOutput()->GetArrays();
     EXPECT_TRUE(ValidateMesh(made).IsValid());
