@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 namespace bone
 {
@@ -61,13 +62,20 @@ ClosestPointOnTriangle(const Vector3 & x, const Vector3 & a, const Vector3 & b, 
   {
     return a + ab * (vb / sum) + ac * (vc / sum);
   }
-  // On an edge, or degenerate: the nearest of the three.
-  const Vector3 candidates[3] = { ClosestPointOnSegment(x, a, b),
-                                  ClosestPointOnSegment(x, a, c),
-                                  ClosestPointOnSegment(x, b, c) };
-  return *std::min_element(candidates, candidates + 3, [&x](const Vector3 & p, const Vector3 & q) {
-    return (p - x).squaredNorm() < (q - x).squaredNorm();
-  });
+  // On one of the edges that x lies beyond; of a degenerate triangle on any.
+  Vector3 nearest = a;
+  double  least = std::numeric_limits<double>::max();
+  for (const auto & [side, from, to] : { std::tie(vc, a, b), std::tie(vb, a, c), std::tie(va, b, c) })
+  {
+    const Vector3 point = side > 0 ? nearest : ClosestPointOnSegment(x, from, to);
+    const double  squared = side > 0 ? least : (point - x).squaredNorm();
+    if (squared < least)
+    {
+      least = squared;
+      nearest = point;
+    }
+  }
+  return nearest;
 }
 
 TriangleTree::TriangleTree(std::vector<Triangle> triangles)

@@ -38,32 +38,38 @@ public:
   double
   Turn(IdType a, IdType b) const;
 
-  struct Change
-  {
-    double      energy;  ///< mm^4, below 0: less
-    double      area;    ///< mm^2 that the points of contours stand for
-    std::size_t samples; ///< points of contours
-  };
-
-  /** What it would change that triangles of the mesh become others with the same rim. */
-  Change
-  Compare(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added) const;
-
-  /** Gives the points of contours of triangles that go to those that come. */
-  void
-  Replace(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added);
-
-private:
   using Samples = std::vector<const ContourShape::Sample *>;
   /** The third point of a triangle at an edge. */
   using Corner = std::pair<Edge, IdType>;
 
+  /** Triangles of the mesh that may become others with the same rim, and what they cost. */
+  struct Patch
+  {
+    std::vector<TriangleIds> triangles;
+    std::vector<Corner>      beyond;  ///< at the rim, of the triangles next to it
+    Samples                  samples; ///< of the triangles
+    double                   area;    ///< mm^2 that the samples stand for
+    double                   energy;  ///< mm^4, of the triangles and their edges
+  };
+
+  Patch
+  At(const std::vector<TriangleIds> & triangles) const;
+
+  /** What it would cost in addition (mm^4, below 0: less) if a patch became these triangles. */
+  double
+  Change(const Patch & patch, const std::vector<TriangleIds> & added) const;
+
+  /** Gives the points of contours of a patch that goes to the triangles that come. */
+  void
+  Replace(const Patch & patch, const std::vector<TriangleIds> & added);
+
+private:
   Samples
   SamplesOf(const std::vector<TriangleIds> & triangles) const;
   std::vector<Corner>
   CornersBeyond(const std::vector<TriangleIds> & triangles) const;
   double
-  Bending(const std::vector<TriangleIds> & triangles, const std::vector<Corner> & beyond) const;
+  Energy(const Patch & patch, const std::vector<TriangleIds> & triangles) const;
   double
   SquaredDistance(const ContourShape::Sample & sample, const TriangleIds & triangle) const;
 

@@ -25,8 +25,8 @@ Flip(TetraComplex &                complex,
   }
   const auto [c, d] = *corners;
   const std::vector<TriangleIds> before = { { a, b, c }, { a, b, d } }, after = { { a, c, d }, { b, c, d } };
-  const auto                     change = energy.Compare(before, after);
-  if (change.samples < 2 || !(change.energy < -parameters.leastGain * change.area))
+  const auto                     patch = energy.At(before);
+  if (patch.samples.size() < 2 || !(energy.Change(patch, after) < -parameters.leastGain * patch.area))
   {
     return false;
   }
@@ -37,7 +37,7 @@ Flip(TetraComplex &                complex,
   {
     return false;
   }
-  energy.Replace(before, after);
+  energy.Replace(patch, after);
   complex.ReplaceAcross(plan.removed, plan.created, plan.regions, plan.surface);
   return true;
 }

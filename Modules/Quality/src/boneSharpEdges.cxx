@@ -57,30 +57,28 @@ private:
       return false;
     }
     m_Complex.SurfaceStar(v, m_Faces);
+    const SurfaceEnergy::Patch             patch = m_Energy.At(Around(v));
     std::vector<std::pair<double, IdType>> candidates;
     for (IdType w : Neighbors())
     {
-      const double change = m_Energy.Compare(Around(v), Afterwards(w)).energy;
+      const double change = m_Energy.Change(patch, Afterwards(w));
       if (change < 0)
       {
         candidates.emplace_back(change, w);
       }
     }
     std::sort(candidates.begin(), candidates.end());
-    return std::any_of(
-      candidates.begin(), candidates.end(), [&](const auto & entry) { return Collapse(v, entry.second); });
-  }
-
-  bool
-  Collapse(IdType v, IdType w)
-  {
+    const double        floor = std::max(m_Parameters.cosineFloor, m_Mover.WorstCosine(v));
     std::vector<IdType> changed;
-    if (!m_Repair.TryCollapse(v, w, std::max(m_Parameters.cosineFloor, m_Mover.WorstCosine(v)), changed))
+    for (const auto & candidate : candidates)
     {
-      return false;
+      if (m_Repair.TryCollapse(v, candidate.second, floor, changed))
+      {
+        m_Energy.Replace(patch, Afterwards(candidate.second));
+        return true;
+      }
     }
-    m_Energy.Replace(Around(v), Afterwards(w));
-    return true;
+    return false;
   }
 
   /** Of the point whose faces are looked at: points joined to it on its surface, ascending. */

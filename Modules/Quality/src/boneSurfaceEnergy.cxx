@@ -110,10 +110,18 @@ SurfaceEnergy::CornersBeyond(const std::vector<TriangleIds> & triangles) const
 }
 
 double
-SurfaceEnergy::Bending(const std::vector<TriangleIds> & triangles, const std::vector<Corner> & beyond) const
+SurfaceEnergy::SquaredDistance(const ContourShape::Sample & sample, const TriangleIds & t) const
+{
+  const auto & x = m_Complex.Points();
+  return (ClosestPointOnTriangle(sample.place, x[t[0]], x[t[1]], x[t[2]]) - sample.place).squaredNorm();
+}
+
+/** Of triangles in the place of a patch. */
+double
+SurfaceEnergy::Energy(const Patch & patch, const std::vector<TriangleIds> & triangles) const
 {
   const auto &        x = m_Complex.Points();
-  std::vector<Corner> corners = beyond;
+  std::vector<Corner> corners = patch.beyond;
   ForEachCorner(triangles, [&](const Edge & edge, IdType corner) { corners.emplace_back(edge, corner); });
   std::sort(corners.begin(), corners.end());
   double energy = 0.0;
@@ -125,47 +133,44 @@ SurfaceEnergy::Bending(const std::vector<TriangleIds> & triangles, const std::ve
       energy += m_Bending.Energy(x[edge.first], x[edge.second], x[corner], x[corners[i + 1].second]);
     }
   }
-  return energy;
-}
-
-double
-SurfaceEnergy::SquaredDistance(const ContourShape::Sample & sample, const TriangleIds & t) const
-{
-  const auto & x = m_Complex.Points();
-  return (ClosestPointOnTriangle(sample.place, x[t[0]], x[t[1]], x[t[2]]) - sample.place).squaredNorm();
-}
-
-SurfaceEnergy::Change
-SurfaceEnergy::Compare(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added) const
-{
-  const auto    beyond = CornersBeyond(removed);
-  const Samples samples = SamplesOf(removed);
-  Change        change{ Bending(added, beyond) - Bending(removed, beyond), 0.0, samples.size() };
-  const auto    nearest = [this](const ContourShape::Sample & sample, const std::vector<TriangleIds> & triangles) {
+  for (const ContourShape::Sample * sample : patch.samples)
+  {
     double least = std::numeric_limits<double>::max();
     for (const TriangleIds & t : triangles)
     {
-      least = std::min(least, SquaredDistance(sample, t));
+      least = std::min(least, SquaredDistance(*sample, t));
     }
-    return least;
-  };
-  for (const ContourShape::Sample * sample : samples)
-  {
-    change.energy += sample->weight * (nearest(*sample, added) - nearest(*sample, removed));
-    change.area += sample->weight;
+    energy += sample->weight * least;
   }
-  return change;
+  return energy;
+}
+
+SurfaceEnergy::Patch
+SurfaceEnergy::At(const std::vector<TriangleIds> & triangles) const
+{
+  Patch patch{ triangles, CornersBeyond(triangles), SamplesOf(triangles), 0.0, 0.0 };
+  for (const ContourShape::Sample * sample : patch.samples)
+  {
+    patch.area += sample->weight;
+  }
+  patch.energy = Energy(patch, triangles);
+  return patch;
+}
+
+double
+SurfaceEnergy::Change(const Patch & patch, const std::vector<TriangleIds> & added) const
+{
+  return Energy(patch, added) - patch.energy;
 }
 
 void
-SurfaceEnergy::Replace(const std::vector<TriangleIds> & removed, const std::vector<TriangleIds> & added)
+SurfaceEnergy::Replace(const Patch & patch, const std::vector<TriangleIds> & added)
 {
-  const Samples samples = SamplesOf(removed);
-  for (const TriangleIds & t : removed)
+  for (const TriangleIds & t : patch.triangles)
   {
     m_Samples.erase(Ascending(t));
   }
-  for (const ContourShape::Sample * sample : samples)
+  for (const ContourShape::Sample * sample : patch.samples)
   {
     const auto nearer = [&](const TriangleIds & a, const TriangleIds & b) {
       return SquaredDistance(*sample, a) < SquaredDistance(*sample, b);

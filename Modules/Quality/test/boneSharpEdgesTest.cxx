@@ -58,7 +58,7 @@ LargestTurn(const SurfaceEnergy & energy)
 
 TEST(SurfaceEnergy, ChangesAreDifferencesOfTheWhole)
 {
-  // What Compare says is what distances and bending of all surfaces together change by.
+  // What Change says is what distances and bending of all surfaces together change by.
   const ContourShape shape(*test::RodContours(Radius, Inner));
   for (unsigned int seed = 1; seed <= 3; ++seed)
   {
@@ -107,11 +107,12 @@ TEST(SurfaceEnergy, ChangesAreDifferencesOfTheWhole)
       {
         continue;
       }
-      const auto asked = energy.Compare(removed, added);
-      if (asked.samples > 0 && asked.energy < 0 && repair.TryCollapse(v, w, 1.0, cells))
+      const auto   patch = energy.At(removed);
+      const double less = energy.Change(patch, added);
+      if (!patch.samples.empty() && less < 0 && repair.TryCollapse(v, w, 1.0, cells))
       {
-        energy.Replace(removed, added);
-        change += asked.energy;
+        energy.Replace(patch, added);
+        change += less;
         ++collapses;
         for (const auto & face : faces)
         {
@@ -122,7 +123,7 @@ TEST(SurfaceEnergy, ChangesAreDifferencesOfTheWhole)
     EXPECT_GT(collapses, 0u) << seed;
     // Points of contours that find a triangle still nearer than those that came make it a little less.
     EXPECT_NEAR(whole() - before, change, 0.1 * std::abs(change)) << seed;
-    EXPECT_EQ(energy.Compare({}, {}).samples, 0u);
+    EXPECT_EQ(energy.At({}).energy, 0.0);
   }
 }
 
