@@ -16,17 +16,19 @@ struct ImprovementParameters
   double distanceBound{ 0.3 }; ///< mm, how far boundary and interfaces may be faired, and their triangles changed
   int    fairingIterations{ 10 };
   int    rounds{ 4 };             ///< of smoothing, flips, repair and optimisation
-  int    optimizationPasses{ 2 }; ///< a round
+  int    optimizationPasses{ 1 }; ///< a round
   double targetAngle{ 0.44 };     ///< cells below are flipped, and their inner points optimised
+  double lastAngle{ 0.61 };       ///< cells below are flipped once at the end
   double repairAngle{ 0.28 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
   double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
-  int    fitPasses{ 5 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
+  int    fitPasses{ 6 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
   double sharpAngle{ 0.7 };       ///< edges that turn by more are collapsed where contours do not ask for them
+  double volumeSlack{ 0.0025 };   ///< of the smaller region beside a surface: its volume may follow contours so far
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
-  double stiffness{ 0.1 };        ///< of surfaces in that fit, see SurfaceBending
+  double stiffness{ 0.13 };       ///< of surfaces in that fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
 };
@@ -54,7 +56,7 @@ struct ImprovementReport
  *    the first surfaces (\ref FitSurfaces); sharp edges that contours do not ask for are collapsed (\ref
  *    CollapseSharpEdges), surface edges flipped where contours lie closer to the other two triangles or these turn less
  *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the worst cells' inner points are
- *    optimised, and the regions get their volumes back once more.
+ *    optimised, edges there flipped, and the regions get their volumes back once more.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

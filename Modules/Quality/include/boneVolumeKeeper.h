@@ -25,10 +25,16 @@ public:
   /** Whether a point of a surface may be at x. */
   using Limit = std::function<bool(IdType p, const Vector3 & x)>;
 
-  /** Moves surface points, no angle below that of `cosineFloor` and below what it was, and each only where \a limit (if
-   * any) allows. */
+  struct Parameters
+  {
+    double cosineFloor{ 1.0 }; ///< no angle below that of this and below what it was
+    double slack{ 0.0 };       ///< share of the smaller region beside a surface by which its volume may differ
+    Limit  limit{};            ///< none: points may go anywhere
+  };
+
+  /** Moves surface points until what each surface encloses is as large as it was, but for the slack. */
   void
-  Restore(TetraComplex & complex, PointMover & mover, double cosineFloor, const Limit & limit = {}) const;
+  Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const;
 
 private:
   /** Volume of all cells of a region of at least the key. */

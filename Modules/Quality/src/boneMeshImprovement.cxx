@@ -23,6 +23,8 @@ constexpr double ShortEdge = 0.6;
 constexpr double TinyEdge = 1e-3;
 constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
+/** Fits of surfaces between two of flips inside. */
+constexpr int FitsToFlip = 2;
 /** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
 constexpr double SurfaceFactor = 1.5;
 
@@ -56,12 +58,12 @@ public:
       {
         Refine();
       }
-      m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.surfaceAngle));
+      RestoreVolumes(m_Parameters.surfaceAngle, 0.0);
       ImproveWorst((round + 1) / steps, 1.0 / steps);
       MendSlivers();
     }
     FitSurfacesAndInside();
-    m_Volumes.Restore(m_Complex, m_Mover, std::cos(m_Parameters.repairAngle));
+    RestoreVolumes(m_Parameters.repairAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
     return m_Report;
   }
 
@@ -85,6 +87,15 @@ private:
       EnhancedIteration(m_Complex, m_Mover, m_Target, smoothing, m_Report.smoothing);
       Advance(0.0);
     }
+  }
+
+  void
+  RestoreVolumes(double angleFloor, double slack)
+  {
+    VolumeKeeper::Parameters keep;
+    keep.cosineFloor = std::cos(angleFloor);
+    keep.slack = slack;
+    m_Volumes.Restore(m_Complex, m_Mover, keep);
   }
 
   void
@@ -148,11 +159,15 @@ private:
         ChangeEdges();
       }
       Smooth(SmoothingsInRound, SurfaceMotion::None);
-      m_Optimizer.MarkAll();
-      Flip(m_Parameters.targetAngle);
+      if (pass % FitsToFlip == 0 || pass + 1 == m_Parameters.fitPasses)
+      {
+        Flip(m_Parameters.targetAngle);
+      }
     }
     constexpr double noSurfaces = 1.0;
+    m_Optimizer.MarkAll();
     m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), noSurfaces);
+    Flip(m_Parameters.lastAngle);
     m_Bound.SetBound(m_Parameters.distanceBound);
   }
 

@@ -138,10 +138,11 @@ SmoothPoints(TetraComplex & complex, const SmoothingParameters & parameters, con
   }
   if (enhanced && parameters.iterations > 0)
   {
-    const double bound = parameters.distanceBound * parameters.distanceBound;
-    volumes.Restore(complex, mover, std::cos(parameters.angleFloor), [&](IdType p, const Vector3 & x) {
-      return (first.Project(complex, p, x) - x).squaredNorm() <= bound;
-    });
+    const double             bound = parameters.distanceBound * parameters.distanceBound;
+    VolumeKeeper::Parameters keep;
+    keep.cosineFloor = std::cos(parameters.angleFloor);
+    keep.limit = [&](IdType p, const Vector3 & x) { return (first.Project(complex, p, x) - x).squaredNorm() <= bound; };
+    volumes.Restore(complex, mover, keep);
   }
   return report;
 }

@@ -3,7 +3,10 @@
  *=========================================================================*/
 #include "boneVolumeKeeper.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace bone
 {
@@ -87,15 +90,26 @@ VolumeKeeper::VolumesWithin(const TetraComplex & complex)
 }
 
 void
-VolumeKeeper::Restore(TetraComplex & complex, PointMover & mover, double cosineFloor, const Limit & limit) const
+VolumeKeeper::Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const
 {
+  // Of the smaller one of the regions beside each surface.
+  std::map<int, double> slack;
+  double                outer = std::numeric_limits<double>::max();
+  for (auto at = m_Volumes.begin(); at != m_Volumes.end(); ++at)
+  {
+    const auto   next = std::next(at);
+    const double inner = at->second - (next == m_Volumes.end() ? 0.0 : next->second);
+    slack[at->first] = parameters.slack * std::min(outer, inner);
+    outer = inner;
+  }
   for (int step = 0; step < Steps; ++step)
   {
     const std::map<int, double> now = VolumesWithin(complex);
     for (const auto & [region, volume] : m_Volumes)
     {
       const auto   found = now.find(region);
-      const double missing = volume - (found == now.end() ? 0.0 : found->second);
+      const double present = found == now.end() ? 0.0 : found->second;
+      const double missing = std::clamp(present, volume - slack[region], volume + slack[region]) - present;
       if (std::abs(missing) < Tolerance * volume)
       {
         continue;
@@ -111,9 +125,9 @@ VolumeKeeper::Restore(TetraComplex & complex, PointMover & mover, double cosineF
         const double  length = level.normals[i].norm();
         const Vector3 shift = level.normals[i] * (missing / level.area / (length > 0 ? length : 1.0));
         const Vector3 x = complex.Points()[p] + shift;
-        if (!limit || limit(p, x))
+        if (!parameters.limit || parameters.limit(p, x))
         {
-          mover.TryMove(p, x, cosineFloor);
+          mover.TryMove(p, x, parameters.cosineFloor);
         }
       }
     }
