@@ -232,6 +232,8 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--keep")
     options = parser.parse_args()
+    if options.keep:
+        pathlib.Path(options.keep).mkdir(parents=True, exist_ok=True)
     validation = Validation(options.build, options.check, options.keep)
     rows, methods = [], ""
     for case in cases(os.environ.get("BONETK_DATA")):

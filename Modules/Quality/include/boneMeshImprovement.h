@@ -19,9 +19,9 @@ struct ImprovementParameters
   int    optimizationPasses{ 1 }; ///< a round
   double targetAngle{ 0.44 };     ///< cells below are flipped, and their inner points optimised
   double lastAngle{ 0.61 };       ///< cells below are flipped once at the end
-  double repairAngle{ 0.28 };     ///< cells below have surface edges flipped and edges collapsed
+  double repairAngle{ 0.29 };     ///< cells below have surface edges flipped and edges collapsed
   double surfaceAngle{ 0.175 };   ///< cells below have their surface points optimised
-  double gradation{ 0.7 };        ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
+  double gradation{ 0.65 };       ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
   int    fitPasses{ 6 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
@@ -55,8 +55,8 @@ struct ImprovementReport
  * 3. In turn: boundary and interfaces are fitted to the contours that the mesh was made of, if they are given, else to
  *    the first surfaces (\ref FitSurfaces); sharp edges that contours do not ask for are collapsed (\ref
  *    CollapseSharpEdges), surface edges flipped where contours lie closer to the other two triangles or these turn less
- *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the worst cells' inner points are
- *    optimised, edges there flipped, and the regions get their volumes back once more.
+ *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the regions get their volumes
+ *    back once more, the worst cells' inner points are optimised, and edges there flipped.
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

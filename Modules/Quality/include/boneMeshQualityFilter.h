@@ -100,7 +100,7 @@ private:
   int               m_FairingIterations{ 10 };
   int               m_Rounds{ 4 };
   double            m_TargetAngle{ 0.44 };
-  double            m_Gradation{ 0.7 };
+  double            m_Gradation{ 0.65 };
   int               m_OptimizationPasses{ 1 };
   double            m_SliverFactor{ 4.0 };
   double            m_Stiffness{ 0.13 };

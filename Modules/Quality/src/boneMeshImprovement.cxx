@@ -63,7 +63,6 @@ public:
       MendSlivers();
     }
     FitSurfacesAndInside();
-    RestoreVolumes(m_Parameters.repairAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
     return m_Report;
   }
 
@@ -164,6 +163,7 @@ private:
         Flip(m_Parameters.targetAngle);
       }
     }
+    RestoreVolumes(m_Parameters.surfaceAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
     constexpr double noSurfaces = 1.0;
     m_Optimizer.MarkAll();
     m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), noSurfaces);
