@@ -106,7 +106,7 @@ AddSmoothCommand(CLI::App & app, Action & action)
     "--contours", options->contours, "Contours (.vtp) of the bone, to which quality fits the surfaces");
   command->add_option("--distance", options->distance, "How far a surface may go, mm (quality, enhanced); default 0.3")
     ->check(NotNegative());
-  command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0.13")
+  command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0.08")
     ->check(NotNegative());
   command
     ->add_option(

@@ -366,6 +366,7 @@ Improve(const std::string & input,
   bone::TetraComplex          complex(before);
   bone::ImprovementParameters parameters;
   parameters.distanceBound = bound;
+  parameters.slices = before.slice;
   std::optional<bone::ContourShape> shape;
   if (!contours.empty())
   {

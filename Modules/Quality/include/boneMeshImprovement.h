@@ -25,12 +25,15 @@ struct ImprovementParameters
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
   int    fitPasses{ 6 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
+  int    morePasses{ 6 };         ///< at most, each stiffer, until the boundary turns by turnShare of what it did
+  double turnShare{ 0.49 };       ///< across slices, where contours are given
   double sharpAngle{ 0.7 };       ///< edges that turn by more are collapsed where contours do not ask for them
   double volumeSlack{ 0.0025 };   ///< of the smaller region beside a surface: its volume may follow contours so far
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
-  double stiffness{ 0.13 };       ///< of surfaces in that fit, see SurfaceBending
+  double stiffness{ 0.08 };       ///< of surfaces in that fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
+  std::vector<int>     slices; ///< of the mesh's points; empty: turns of all edges count, not those across slices
 };
 
 struct ImprovementReport
@@ -55,8 +58,10 @@ struct ImprovementReport
  * 3. In turn: boundary and interfaces are fitted to the contours that the mesh was made of, if they are given, else to
  *    the first surfaces (\ref FitSurfaces); sharp edges that contours do not ask for are collapsed (\ref
  *    CollapseSharpEdges), surface edges flipped where contours lie closer to the other two triangles or these turn less
- *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Last the regions get their volumes
- *    back once more, the worst cells' inner points are optimised, and edges there flipped.
+ *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Where the boundary still turns by more than
+ *    turnShare, more of these follow. Last the regions get their volumes back once more, the worst cells' inner points
+ *    are optimised, and edges there flipped.
+ *
  * Sequential; the result depends on the input alone. */
 ImprovementReport
 ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress = {});

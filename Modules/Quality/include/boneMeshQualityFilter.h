@@ -74,7 +74,7 @@ public:
   itkSetMacro(SliverFactor, double);
   itkGetConstMacro(SliverFactor, double);
   /** Resistance of surfaces to bending where they are fitted (\ref SurfaceBending), without unit: the larger, the
-   * smoother and the farther from the first ones or the contours; default 0.13, 0: none. */
+   * smoother and the farther from the first ones or the contours; default 0.08, 0: none. */
   itkSetMacro(Stiffness, double);
   itkGetConstMacro(Stiffness, double);
   /** What the last run did. */
@@ -103,7 +103,7 @@ private:
   double            m_Gradation{ 0.65 };
   int               m_OptimizationPasses{ 1 };
   double            m_SliverFactor{ 4.0 };
-  double            m_Stiffness{ 0.13 };
+  double            m_Stiffness{ 0.08 };
   ImprovementReport m_Report;
 };
 

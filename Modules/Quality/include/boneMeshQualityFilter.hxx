@@ -78,6 +78,7 @@ MeshQualityFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction
     shape.emplace(*this->GetContours());
     parameters.shape = &*shape;
   }
+  parameters.slices = this->GetInput()->GetArrays().slice;
   m_Report = ImproveMesh(complex, parameters, progress);
 }
 

@@ -16,6 +16,11 @@ namespace bone
 double
 TurnAt(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d);
 
+/** Mean angle between neighbouring triangles of the boundary but for flat cuts, rad: of the edges within a slice, where
+ * slice meets slice, if points have slices; else of all. */
+double
+MeanBoundaryTurn(const TetraComplex & complex, const std::vector<int> & slices);
+
 /** \class SurfaceBending
  * \brief The edges of a mesh's surfaces as hinges that resist turning.
  *
@@ -57,8 +62,6 @@ public:
 private:
   using Hinge = std::array<IdType, 4>; ///< the edge, then the opposite corners
 
-  void
-  FindHinges(const TetraComplex & complex);
   double
   Softening(double turn) const;
 

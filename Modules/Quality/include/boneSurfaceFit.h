@@ -12,7 +12,7 @@ namespace bone
 struct SurfaceFitParameters
 {
   int    steps{ 1 };
-  double stiffness{ 0.13 };    ///< of edges against turning, see SurfaceBending; 0: none
+  double stiffness{ 0.08 };    ///< of edges against turning, see SurfaceBending; 0: none
   double cosineFloor{ 0.985 }; ///< of the dihedral angle that no move may go below, unless it was below
 };
 

@@ -25,6 +25,8 @@ constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
 /** Fits of surfaces between two of flips inside. */
 constexpr int FitsToFlip = 2;
+/** From one additional fit to the next. */
+constexpr double StiffnessFactor = 1.3;
 /** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
 constexpr double SurfaceFactor = 1.5;
 
@@ -35,6 +37,7 @@ public:
     : m_Complex(complex)
     , m_Parameters(parameters)
     , m_Progress(progress)
+    , m_FirstTurn(MeanBoundaryTurn(complex, parameters.slices))
     , m_First(complex, 0.0, 0)
     , m_Bound(complex, m_First, parameters.distanceBound)
     , m_Mover(complex, &m_Bound)
@@ -147,20 +150,27 @@ private:
   {
     // Between slices that the mesh has left out, contours may lie farther from it than its bound.
     m_Bound.SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
-    for (int pass = 0; pass < m_Parameters.fitPasses; ++pass)
+    double stiffness = m_Parameters.stiffness;
+    int    passes = m_Parameters.fitPasses;
+    for (int pass = 0; pass < passes; ++pass)
     {
       SurfaceFitParameters fit;
-      fit.stiffness = m_Parameters.stiffness;
+      fit.stiffness = stiffness;
       fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
       FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
       if (m_Parameters.shape)
       {
-        ChangeEdges();
+        ChangeEdges(stiffness);
       }
       Smooth(SmoothingsInRound, SurfaceMotion::None);
-      if (pass % FitsToFlip == 0 || pass + 1 == m_Parameters.fitPasses)
+      if (pass % FitsToFlip == 0 || pass + 1 == passes)
       {
         Flip(m_Parameters.targetAngle);
+      }
+      if (pass + 1 == passes && passes < m_Parameters.fitPasses + m_Parameters.morePasses && IsRough())
+      {
+        stiffness *= StiffnessFactor;
+        ++passes;
       }
     }
     RestoreVolumes(m_Parameters.surfaceAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
@@ -171,12 +181,20 @@ private:
     m_Bound.SetBound(m_Parameters.distanceBound);
   }
 
+  /** Whether the boundary turns by more than is wanted, and contours tell how smooth it may be. */
+  bool
+  IsRough() const
+  {
+    return m_Parameters.shape && m_Parameters.stiffness > 0 &&
+           MeanBoundaryTurn(m_Complex, m_Parameters.slices) > m_Parameters.turnShare * m_FirstTurn;
+  }
+
   /** Collapses and flips of surface edges by contours and turns. */
   void
-  ChangeEdges()
+  ChangeEdges(double stiffness)
   {
     const ContourSamples contours(m_Complex, *m_Parameters.shape);
-    const SurfaceBending bending(m_Complex, m_Parameters.stiffness);
+    const SurfaceBending bending(m_Complex, stiffness);
     SurfaceEnergy        energy(m_Complex, contours, bending);
     SharpEdgeParameters  sharp;
     sharp.angle = m_Parameters.sharpAngle;
@@ -215,7 +233,8 @@ private:
   TetraComplex &                m_Complex;
   const ImprovementParameters & m_Parameters;
   const ProgressFunction &      m_Progress;
-  SurfaceTarget                 m_First; ///< the surfaces as they were
+  double                        m_FirstTurn; ///< mean of the boundary as it was, rad
+  SurfaceTarget                 m_First;     ///< the surfaces as they were
   SurfaceBound                  m_Bound;
   PointMover                    m_Mover;
   SurfaceTarget                 m_Target;

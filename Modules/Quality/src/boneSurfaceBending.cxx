@@ -36,6 +36,38 @@ TurnFactors(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vecto
   return { { bc + bd, ac + ad, -ac - bc, -ad - bd } };
 }
 
+/** The edge, then the opposite corners. */
+using Hinge = std::array<IdType, 4>;
+
+/** Edges within surfaces that are not cut flat, each with its surface. */
+std::vector<std::pair<int, Hinge>>
+HingesOf(const TetraComplex & complex)
+{
+  std::map<std::tuple<int, IdType, IdType>, std::vector<IdType>> corners;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
+      for (int k = 0; k < 3 && surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0; ++k)
+      {
+        const Id4 &  cell = complex.Cell(t);
+        const IdType a = cell[TetraFaces[i][k]], b = cell[TetraFaces[i][(k + 1) % 3]];
+        corners[{ surface, std::min(a, b), std::max(a, b) }].push_back(cell[TetraFaces[i][(k + 2) % 3]]);
+      }
+    }
+  }
+  std::vector<std::pair<int, Hinge>> hinges;
+  for (const auto & [edge, opposite] : corners)
+  {
+    if (opposite.size() == 2)
+    {
+      hinges.push_back({ std::get<0>(edge), { std::get<1>(edge), std::get<2>(edge), opposite[0], opposite[1] } });
+    }
+  }
+  return hinges;
+}
+
 /** The system of SurfaceBending::Solve, by the points that are free. */
 class HingeSystem
 {
@@ -142,9 +174,30 @@ TurnAt(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & 
   return std::atan2(n.cross(m).norm(), n.dot(m));
 }
 
+double
+MeanBoundaryTurn(const TetraComplex & complex, const std::vector<int> & slices)
+{
+  const auto & x = complex.Points();
+  double       turns = 0.0;
+  std::size_t  count = 0;
+  for (const auto & [surface, h] : HingesOf(complex))
+  {
+    const bool within = slices.empty() || slices[h[0]] == slices[h[1]];
+    if (within && complex.Surfaces().surfaces[surface].IsBoundary())
+    {
+      turns += TurnAt(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
+      ++count;
+    }
+  }
+  return count > 0 ? turns / static_cast<double>(count) : 0.0;
+}
+
 SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
 {
-  FindHinges(complex);
+  for (const auto & [surface, hinge] : HingesOf(complex))
+  {
+    m_Hinges.push_back(hinge);
+  }
   const auto &     x = complex.Points();
   std::set<IdType> ends;
   double           turns = 0.0, area = 0.0;
@@ -159,32 +212,6 @@ SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
   {
     m_SoftTurn = SoftShare * turns / static_cast<double>(m_Hinges.size());
     m_Factor = stiffness * std::pow(area / static_cast<double>(ends.size()), 2);
-  }
-}
-
-void
-SurfaceBending::FindHinges(const TetraComplex & complex)
-{
-  std::map<std::tuple<int, IdType, IdType>, std::vector<IdType>> corners;
-  for (IdType t = 0; t < complex.Size(); ++t)
-  {
-    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
-    {
-      const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
-      for (int k = 0; k < 3 && surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0; ++k)
-      {
-        const Id4 &  cell = complex.Cell(t);
-        const IdType a = cell[TetraFaces[i][k]], b = cell[TetraFaces[i][(k + 1) % 3]];
-        corners[{ surface, std::min(a, b), std::max(a, b) }].push_back(cell[TetraFaces[i][(k + 2) % 3]]);
-      }
-    }
-  }
-  for (const auto & [edge, opposite] : corners)
-  {
-    if (opposite.size() == 2)
-    {
-      m_Hinges.push_back({ { std::get<1>(edge), std::get<2>(edge), opposite[0], opposite[1] } });
-    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include "boneSurfaceBending.h"
 
 #include "../../Core/test/boneTestBodies.h"
+#include "boneMeshImprovement.h"
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
 #include "boneQualityTestBodies.h"
@@ -166,6 +167,40 @@ TEST(SurfaceBending, SmoothsWhatIsRoughWithoutShrinkingIt)
     EXPECT_LT(after, 0.7 * before) << seed;
     EXPECT_NEAR(mean / count, Radius, 0.1) << seed;
   }
+}
+
+TEST(SurfaceBending, TheMeanTurnIsOfEdgesWithinSlicesWhereThereAreSlices)
+{
+  const TetraComplex complex(RoughRod(0.4, 6));
+  EXPECT_NEAR(MeanBoundaryTurn(complex, {}), test::MeanTurn(complex), 1e-9);
+  // A smooth rod turns by nothing where slices meet, and around itself between them.
+  const MeshArrays   smooth = RoughRod(0.0, 6);
+  const TetraComplex rod(smooth);
+  std::vector<int>   slices;
+  for (const Vector3 & x : smooth.points)
+  {
+    slices.push_back(static_cast<int>(std::lround(x.z() / 2.0)));
+  }
+  EXPECT_LT(MeanBoundaryTurn(rod, slices), 1e-6);
+  EXPECT_GT(MeanBoundaryTurn(rod, {}), 0.1);
+}
+
+TEST(SurfaceBending, FitsGoOnUntilTheBoundaryTurnsByTheShareWanted)
+{
+  const ContourShape shape(*test::RodContours(Radius));
+  double             turn[2];
+  for (const bool more : { false, true })
+  {
+    TetraComplex          complex(RoughRod(0.4, 7));
+    ImprovementParameters parameters;
+    parameters.shape = &shape;
+    parameters.stiffness = 1e-3;
+    parameters.morePasses = more ? 6 : 0;
+    parameters.turnShare = 0.1;
+    ImproveMesh(complex, parameters);
+    turn[more] = MeanBoundaryTurn(complex, {});
+  }
+  EXPECT_LT(turn[1], turn[0]);
 }
 
 TEST(SurfaceBending, AStifferSurfaceTurnsLessAndStaysOnTheContours)
