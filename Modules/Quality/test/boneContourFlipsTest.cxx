@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneContourFlips.h"
 
-#include "../../Core/test/boneTestBodies.h"
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"
@@ -25,12 +24,7 @@ constexpr double Radius = 12.0;
 MeshArrays
 TwistedRod(double twist)
 {
-  test::TubeShape shape;
-  shape.rings = { 1, 2 };
-  shape.radius = Radius;
-  shape.bend = 0.0;
-  shape.jitter = 0.0;
-  MeshArrays mesh = test::MakeTube(shape);
+  MeshArrays mesh = test::StraightRod(Radius);
   for (Vector3 & x : mesh.points)
   {
     const double c = std::cos(twist * x.z()), s = std::sin(twist * x.z());

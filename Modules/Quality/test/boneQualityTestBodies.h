@@ -4,6 +4,7 @@
 #ifndef boneQualityTestBodies_h
 #define boneQualityTestBodies_h
 
+#include "../../Core/test/boneTestBodies.h"
 #include "boneContourStack.h"
 #include "boneTetraComplex.h"
 
@@ -45,6 +46,18 @@ RodContours(double radius, double inner = 0.0)
   auto stack = ContourStack::New();
   stack->SetSlices(slices);
   return stack;
+}
+
+/** A straight rod along z of two regions, 22 mm long, its points on regular rings. */
+inline MeshArrays
+StraightRod(double radius)
+{
+  TubeShape shape;
+  shape.rings = { 1, 2 };
+  shape.radius = radius;
+  shape.bend = 0.0;
+  shape.jitter = 0.0;
+  return MakeTube(shape);
 }
 
 /** Mean angle (rad) between neighbouring triangles of the boundary that is not cut flat. */

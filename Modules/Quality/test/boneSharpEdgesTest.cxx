@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneSharpEdges.h"
 
-#include "../../Core/test/boneTestBodies.h"
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
 #include "boneQualityTestBodies.h"
@@ -25,12 +24,7 @@ constexpr double Floor = 0.05; ///< rad, of dihedral angles afterwards
 MeshArrays
 PittedRod(unsigned int every, unsigned int seed, double depth = 2.5)
 {
-  test::TubeShape shape;
-  shape.rings = { 1, 2 };
-  shape.radius = Radius;
-  shape.bend = 0.0;
-  shape.jitter = 0.0;
-  MeshArrays   mesh = test::MakeTube(shape);
+  MeshArrays   mesh = test::StraightRod(Radius);
   std::mt19937 random(seed);
   for (Vector3 & x : mesh.points)
   {

@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneSurfaceBending.h"
 
-#include "../../Core/test/boneTestBodies.h"
 #include "boneMeshImprovement.h"
 #include "boneMeshQualityFilter.h"
 #include "boneMeshValidator.h"
@@ -24,12 +23,7 @@ constexpr double Radius = 12.0;
 MeshArrays
 RoughRod(double noise, unsigned int seed)
 {
-  test::TubeShape shape;
-  shape.rings = { 1, 2 };
-  shape.radius = Radius;
-  shape.bend = 0.0;
-  shape.jitter = 0.0;
-  MeshArrays                             mesh = test::MakeTube(shape);
+  MeshArrays                             mesh = test::StraightRod(Radius);
   std::mt19937                           random(seed);
   std::uniform_real_distribution<double> move(-noise, noise);
   for (Vector3 & x : mesh.points)
