@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneSurfacePhantom.h"
 
+#include "../../Core/test/boneTestSurfaces.h"
 #include "bonePhantomImageSource.h"
 
 #include <gmock/gmock.h>
@@ -14,15 +15,11 @@
 #include <random>
 
 using namespace bone;
+using test::Box;
+using test::Shape;
 
 namespace
 {
-struct Shape
-{
-  std::vector<Vector3>                    points;
-  std::vector<TriangleDistance::Triangle> triangles;
-};
-
 /** An icosahedron, split `levels` times, with its points on the sphere. */
 Shape
 Icosphere(double radius, int levels)
@@ -65,28 +62,6 @@ Icosphere(double radius, int levels)
   return s;
 }
 
-Shape
-Box(const Vector3 & half)
-{
-  Shape s;
-  for (int i = 0; i < 8; ++i)
-  {
-    s.points.push_back(half.cwiseProduct(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-  }
-  s.triangles = {
-    { { 0, 2, 1 } }, { { 1, 2, 3 } }, { { 4, 5, 6 } }, { { 5, 7, 6 } }, { { 0, 1, 4 } }, { { 1, 5, 4 } },
-    { { 2, 6, 3 } }, { { 3, 6, 7 } }, { { 0, 4, 2 } }, { { 2, 4, 6 } }, { { 1, 3, 5 } }, { { 3, 7, 5 } }
-  };
-  return s;
-}
-
-double
-BoxDistance(const Vector3 & x, const Vector3 & half)
-{
-  const Vector3 q = x.cwiseAbs() - half;
-  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-}
-
 /** Thickness the same everywhere, no cavity. */
 SurfacePhantomParameters
 Shell(double thickness)
@@ -111,40 +86,6 @@ ErrorOf(const Shape & s, const SurfacePhantomParameters & p = SurfacePhantomPara
   return "";
 }
 } // namespace
-
-TEST(TriangleDistance, IsExactForABox)
-{
-  const Vector3                          half(3.0, 5.0, 9.0);
-  const Shape                            box = Box(half);
-  const TriangleDistance                 distance(box.points, box.triangles);
-  std::mt19937                           random(3);
-  std::uniform_real_distribution<double> unit(-1.5, 1.5);
-  EXPECT_NEAR(distance.GetVolume(), 8.0 * half.prod(), 1e-9);
-  for (int n = 0; n < 5000; ++n)
-  {
-    const double  a = unit(random), b = unit(random), c = unit(random);
-    const Vector3 x = half.cwiseProduct(Vector3(a, b, c));
-    const auto    nearest = distance.FindNearest(x);
-    EXPECT_NEAR(nearest.distance, BoxDistance(x, half), 1e-9);
-    EXPECT_NEAR(nearest.gradient.norm(), 1.0, 1e-9);
-    EXPECT_NEAR((x - nearest.distance * nearest.gradient - nearest.point).norm(), 0.0, 1e-9);
-  }
-  // Off an edge and off a corner, where a face's own normal could lie.
-  EXPECT_NEAR(distance.FindNearest({ 4.0, 6.0, 1.0 }).distance, std::sqrt(2.0), 1e-12);
-  EXPECT_NEAR(distance.FindNearest({ 4.0, 6.0, 10.0 }).distance, std::sqrt(3.0), 1e-12);
-}
-
-TEST(TriangleDistance, TurnsASurfaceThatLooksInward)
-{
-  Shape box = Box({ 1, 2, 3 });
-  for (auto & t : box.triangles)
-  {
-    std::swap(t[0], t[1]);
-  }
-  const TriangleDistance distance(box.points, box.triangles);
-  EXPECT_NEAR(distance.FindNearest(Vector3::Zero()).distance, -1.0, 1e-12);
-  EXPECT_NEAR(distance.FindNearest({ 3, 0, 0 }).distance, 2.0, 1e-12);
-}
 
 TEST(SurfacePhantom, RefusesWhatIsNoClosedSurface)
 {

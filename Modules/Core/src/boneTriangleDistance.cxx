@@ -185,6 +185,6 @@ TriangleDistance::FindNearest(const Vector3 & x) const
   const double  length = std::sqrt(found.squaredDistance);
   const double  sign = offset.dot(normal) < 0.0 ? -1.0 : 1.0;
   const Vector3 gradient = length > 1e-9 ? Vector3(sign / length * offset) : Vector3(normal.normalized());
-  return { sign * length, found.point, gradient };
+  return { sign * length, found.point, gradient, found.triangle };
 }
 } // namespace bone

@@ -30,9 +30,17 @@ public:
     double  distance; ///< mm, negative inside
     Vector3 point;    ///< on the surface
     Vector3 gradient; ///< unit vector of increasing distance
+    int     triangle; ///< that the point is on
   };
   Nearest
   FindNearest(const Vector3 & x) const;
+
+  /** Whether the surface lies within a distance (mm) of x: quicker than to find the nearest point. */
+  bool
+  IsWithin(const Vector3 & x, double distance) const
+  {
+    return m_Tree.IsWithin(x, distance * distance);
+  }
 
   const std::vector<Vector3> &
   GetPoints() const
