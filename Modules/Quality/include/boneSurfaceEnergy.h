@@ -55,7 +55,7 @@ public:
   Patch
   At(const std::vector<TriangleIds> & triangles) const;
 
-  /** What it would cost in addition (mm^4, below 0: less) if a patch became these triangles. */
+  /** What it would cost less (mm^4, below 0) if a patch became these triangles; 0 or above: not less. */
   double
   Change(const Patch & patch, const std::vector<TriangleIds> & added) const;
 
@@ -69,7 +69,7 @@ private:
   std::vector<Corner>
   CornersBeyond(const std::vector<TriangleIds> & triangles) const;
   double
-  Energy(const Patch & patch, const std::vector<TriangleIds> & triangles) const;
+  Energy(const Patch & patch, const std::vector<TriangleIds> & triangles, double enough) const;
   double
   SquaredDistance(const ContourShape::Sample & sample, const TriangleIds & triangle) const;
 

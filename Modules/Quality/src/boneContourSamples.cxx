@@ -3,6 +3,10 @@
  *=========================================================================*/
 #include "boneContourSamples.h"
 
+#include "boneParallelFor.h"
+
+#include <optional>
+
 namespace bone
 {
 namespace
@@ -71,13 +75,14 @@ ContourSamples::FindMatches(const TetraComplex & complex) const
     {
       triangles.push_back({ points[face.ids[0]], points[face.ids[1]], points[face.ids[2]] });
     }
-    const TriangleTree tree(std::move(triangles));
-    for (const ContourShape::Sample & sample : m_Levels[k])
-    {
-      const auto nearest = tree.FindNearest(sample.place);
+    const TriangleTree                tree(std::move(triangles));
+    std::vector<std::optional<Match>> found(m_Levels[k].size());
+    ParallelFor(found.size(), [&](std::size_t s) {
+      const ContourShape::Sample & sample = m_Levels[k][s];
+      const auto                   nearest = tree.FindNearest(sample.place);
       if (nearest.triangle < 0 || nearest.squaredDistance > Farthest * Farthest)
       {
-        continue;
+        return;
       }
       const LevelTriangle & face = faces[nearest.triangle];
       const auto &          x = tree.GetTriangle(nearest.triangle);
@@ -85,7 +90,14 @@ ContourSamples::FindMatches(const TetraComplex & complex) const
       const double          slope = face.sign * normal.dot(sample.outward);
       if (slope > LeastSlope)
       {
-        matches.push_back({ &sample, face.ids, nearest.point, normal, sample.weight / (slope * slope) });
+        found[s] = Match{ &sample, face.ids, nearest.point, normal, sample.weight / (slope * slope) };
+      }
+    });
+    for (const auto & match : found)
+    {
+      if (match)
+      {
+        matches.push_back(*match);
       }
     }
   }

@@ -116,9 +116,9 @@ SurfaceEnergy::SquaredDistance(const ContourShape::Sample & sample, const Triang
   return (ClosestPointOnTriangle(sample.place, x[t[0]], x[t[1]], x[t[2]]) - sample.place).squaredNorm();
 }
 
-/** Of triangles in the place of a patch. */
+/** Of triangles in the place of a patch; a part of it where that is `enough`. */
 double
-SurfaceEnergy::Energy(const Patch & patch, const std::vector<TriangleIds> & triangles) const
+SurfaceEnergy::Energy(const Patch & patch, const std::vector<TriangleIds> & triangles, double enough) const
 {
   const auto &        x = m_Complex.Points();
   std::vector<Corner> corners = patch.beyond;
@@ -135,6 +135,10 @@ SurfaceEnergy::Energy(const Patch & patch, const std::vector<TriangleIds> & tria
   }
   for (const ContourShape::Sample * sample : patch.samples)
   {
+    if (energy >= enough)
+    {
+      break;
+    }
     double least = std::numeric_limits<double>::max();
     for (const TriangleIds & t : triangles)
     {
@@ -153,14 +157,14 @@ SurfaceEnergy::At(const std::vector<TriangleIds> & triangles) const
   {
     patch.area += sample->weight;
   }
-  patch.energy = Energy(patch, triangles);
+  patch.energy = Energy(patch, triangles, std::numeric_limits<double>::max());
   return patch;
 }
 
 double
 SurfaceEnergy::Change(const Patch & patch, const std::vector<TriangleIds> & added) const
 {
-  return Energy(patch, added) - patch.energy;
+  return Energy(patch, added, patch.energy) - patch.energy;
 }
 
 void
