@@ -55,6 +55,7 @@ void
 BuildPipeline::SetLabelImage(const LabelImage * labels)
 {
   m_Snake->SetLabelImage(labels);
+  m_Quality->SetLabelImage(labels);
 }
 
 void

@@ -109,6 +109,7 @@ FindResolution(const Options & options, const Input & input, BuildPipeline & pip
   pipeline.SetLabelImage(input.labels);
   pipeline.SetInitialContours(input.contours);
   pipeline.GetSnake()->SetLabel(options.bone.label);
+  pipeline.GetQuality()->SetLabel(options.bone.label);
   pipeline.GetSnake()->SetAxis(static_cast<unsigned int>(options.axis));
   double surface = input.surface;
   if (input.labels.IsNull())

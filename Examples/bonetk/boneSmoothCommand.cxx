@@ -5,6 +5,7 @@
 #include "boneOptions.h"
 
 #include "boneContourIO.h"
+#include "boneImageIO.h"
 #include "boneMeshIO.h"
 #include "boneMeshQualityFilter.h"
 #include "boneTetraSmoothingFilter.h"
@@ -20,6 +21,8 @@ struct Options
   std::string input;
   std::string method{ "quality" };
   std::string contours;
+  std::string labels;
+  int         label{ 0 };
   int         iterations{ 0 };
   double      distance{ 0.3 };
   double      stiffness{ -1.0 };
@@ -47,6 +50,11 @@ MakeQuality(const Options & options)
   {
     quality->SetContours(ReadContours(options.contours));
   }
+  if (!options.labels.empty())
+  {
+    quality->SetLabelImage(ReadLabels(options.labels));
+    quality->SetLabel(static_cast<short>(options.label));
+  }
   return quality.GetPointer();
 }
 
@@ -57,9 +65,9 @@ MakeSmoothing(const Options & options)
   static const std::map<std::string, SmoothingMethod> methods = { { "laplacian", SmoothingMethod::Laplacian },
                                                                   { "smart", SmoothingMethod::Smart },
                                                                   { "enhanced", SmoothingMethod::Enhanced } };
-  if (!options.contours.empty() || options.stiffness >= 0)
+  if (!options.contours.empty() || !options.labels.empty() || options.stiffness >= 0)
   {
-    throw UsageError("--contours and --stiffness go with --method quality only");
+    throw UsageError("--contours, --labels and --stiffness go with --method quality only");
   }
   auto smoothing = TetraSmoothingFilter<MeshType>::New();
   smoothing->SetMethod(methods.at(options.method));
@@ -104,6 +112,11 @@ AddSmoothCommand(CLI::App & app, Action & action)
     ->type_name("quality|enhanced|smart|laplacian");
   command->add_option(
     "--contours", options->contours, "Contours (.vtp) of the bone, to which quality fits the surfaces");
+  auto * labels = command->add_option(
+    "--labels", options->labels, "Label map of the bone, to whose voxels quality fits the surface next to contours");
+  command->add_option("--label", options->label, "The bone's value in the label map; default: every value but 0")
+    ->check(Between(-32768, 32767))
+    ->needs(labels);
   command->add_option("--distance", options->distance, "How far a surface may go, mm (quality, enhanced); default 0.3")
     ->check(NotNegative());
   command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0.08")

@@ -26,12 +26,16 @@ class Commands(TestCase):
         for method in ("laplacian", "smart", "enhanced"):
             self.succeed("smooth", "m.vtu", "--method", method, "--iterations", 2, "-o", method + ".vtu")
         self.succeed("smooth", "m.vtu", "--iterations", 2, "-o", "s.vtu")
+        self.succeed("smooth", "m.vtu", "--contours", "c.vtp", "--labels", "l.nii.gz", "-o", "sl.vtu")
+        self.refuse("smooth", "m.vtu", "--labels", "l.nii.gz", "--label", 9, "-o", "bad.vtu", says="label 9")
+        self.refuse("smooth", "m.vtu", "--labels", "l.nii.gz", "--method", "smart", "-o", "bad.vtu", code=2,
+                    says="--labels")
         self.succeed("fit", "ct.nii.gz", "s.vtu", "--degree", 2, "-o", "d.vtu")
         self.succeed("fit", "ct.nii.gz", "d.vtu", "--degree", 1, "--continuous", "-o", "d1.vtu")
         self.succeed("simplify", "d.vtu", "--tetrahedra", 2500, 1500, "-o", "h")
         self.assertEqual(sorted(f for f in os.listdir() if f.startswith("h")),
                          ["h.hierarchy.json", "h_L1.vtu", "h_L2.vtu", "h_L3.vtu"])
-        for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "d.vtu", "d1.vtu", "h_L2.vtu", "h_L3.vtu"):
+        for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "sl.vtu", "d.vtu", "d1.vtu", "h_L2.vtu", "h_L3.vtu"):
             out, _ = self.succeed("validate", mesh)
             self.assertNotIn("FAILED", out, mesh)
         levels = read_json("h.hierarchy.json")["levels"]

@@ -367,6 +367,12 @@ Improve(const std::string & input,
   bone::ImprovementParameters parameters;
   parameters.distanceBound = bound;
   parameters.slices = before.slice;
+  bone::LabelOutline outline;
+  if (mask.IsNotNull())
+  {
+    outline = bone::FindOutline(*mask, 0);
+    parameters.outline = &outline;
+  }
   std::optional<bone::ContourShape> shape;
   if (!contours.empty())
   {

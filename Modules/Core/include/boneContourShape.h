@@ -47,6 +47,13 @@ public:
   std::vector<Sample>
   SampleContours(int level, double spacing) const;
 
+  /** Unit normal of the slices. */
+  const Vector3 &
+  GetNormal() const
+  {
+    return m_Frame->GetNormal();
+  }
+
   /** Length of all contours of a body of level r, mm. */
   double
   GetContourLength(int level) const;

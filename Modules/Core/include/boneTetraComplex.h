@@ -219,6 +219,10 @@ private:
   IdType                           m_AliveCount{ 0 };
   mutable std::vector<char>        m_Mark; ///< of points, for LinksMeetInEdgeLink; else 0
 };
+
+/** Triangles of the boundary, outward. */
+std::vector<std::array<IdType, 3>>
+BoundaryFaces(const TetraComplex & complex);
 } // namespace bone
 
 #endif

@@ -551,4 +551,22 @@ TetraComplex::Compact(const MeshArrays & source, std::vector<IdType> & pointId, 
   pointId = RemoveUnusedPoints(mesh);
   return mesh;
 }
+
+std::vector<std::array<IdType, 3>>
+BoundaryFaces(const TetraComplex & complex)
+{
+  std::vector<std::array<IdType, 3>> faces;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      if (complex.Neighbors(t)[i] < 0)
+      {
+        const Id4 & c = complex.Cell(t);
+        faces.push_back({ { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] } });
+      }
+    }
+  }
+  return faces;
+}
 } // namespace bone

@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace bone;
 
 namespace
@@ -45,6 +47,21 @@ Bipyramid(double lower, double upper)
   return mesh;
 }
 } // namespace
+
+TEST(TetraComplex, HasTheBoundaryOfItsMesh)
+{
+  const MeshArrays mesh = test::MakeTube({});
+  auto             expected = BoundaryFaces(mesh), found = BoundaryFaces(TetraComplex(mesh));
+  for (auto * faces : { &expected, &found })
+  {
+    for (auto & face : *faces)
+    {
+      std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    }
+    std::sort(faces->begin(), faces->end());
+  }
+  EXPECT_EQ(found, expected);
+}
 
 TEST(SurfaceComplex, RodHasFlatEndsWithRimsAndLayers)
 {

@@ -5,6 +5,7 @@
 #define boneMeshImprovement_h
 
 #include "boneContourShape.h"
+#include "boneLabelOutline.h"
 #include "boneSmoothingKernel.h"
 
 namespace bone
@@ -24,7 +25,7 @@ struct ImprovementParameters
   double gradation{ 0.65 };       ///< growth of cells inward from the surfaces, mm a mm; 0: no points are added
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
-  int    fitPasses{ 6 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
+  int    fitPasses{ 4 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
   int    morePasses{ 6 };         ///< at most, each stiffer, until the boundary turns by turnShare of what it did
   double turnShare{ 0.49 };       ///< across slices, where contours are given
   double sharpAngle{ 0.7 };       ///< edges that turn by more are collapsed where contours do not ask for them
@@ -33,7 +34,10 @@ struct ImprovementParameters
   double stiffness{ 0.08 };       ///< of surfaces in that fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
-  std::vector<int>     slices; ///< of the mesh's points; empty: turns of all edges count, not those across slices
+  const LabelOutline * outline{
+    nullptr
+  };                       ///< of the bone in an image: surfaces are fitted to it too, and put on its side
+  std::vector<int> slices; ///< of the mesh's points; empty: turns of all edges count, not those across slices
 };
 
 struct ImprovementReport

@@ -30,6 +30,10 @@ namespace bone
  * Surfaces are then fitted to the contours (\ref FitSurfaces), and their edges flipped where that brings contours
  * closer or makes the surface turn less (\ref FlipToContours).
  *
+ * Optional input "LabelImage", on any grid: the bone, as voxels. The boundary is fitted to the outline of `Label` too,
+ * as far as contours do not know it, between slices; and where it passes the centre of a voxel on the wrong side by
+ * less than a sixteenth of a voxel, it is put on the right one (\ref SideKeeper).
+ *
  * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
  * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
 template <typename TMesh = DensityMesh<double>>
@@ -49,6 +53,15 @@ public:
   const ContourStack *
   GetContours() const;
 
+  using LabelImageType = itk::Image<short, 3>;
+  void
+  SetLabelImage(const LabelImageType * labels);
+  const LabelImageType *
+  GetLabelImage() const;
+  /** The bone's label; default 0: all labels but 0. */
+  itkSetMacro(Label, short);
+  itkGetConstMacro(Label, short);
+
   /** Smoothing iterations at the start; default 4. */
   itkSetMacro(Iterations, int);
   itkGetConstMacro(Iterations, int);
@@ -64,10 +77,10 @@ public:
   /** Cells with a dihedral angle below are swapped and their inner points optimised, rad; default 0.44 (25 degrees). */
   itkSetMacro(TargetAngle, double);
   itkGetConstMacro(TargetAngle, double);
-  /** How cells grow inward from the surfaces, mm a mm; default 0.7. 0: no points are added. */
+  /** How cells grow inward from the surfaces, mm a mm; default 0.65. 0: no points are added. */
   itkSetMacro(Gradation, double);
   itkGetConstMacro(Gradation, double);
-  /** Passes of optimisation a round; default 2. */
+  /** Passes of optimisation a round; default 1. */
   itkSetMacro(OptimizationPasses, int);
   itkGetConstMacro(OptimizationPasses, int);
   /** How many times DistanceBound surfaces may go to mend the worst cells, at least 1; default 4. */
@@ -95,6 +108,7 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
+  short             m_Label{ 0 };
   int               m_Iterations{ 4 };
   double            m_DistanceBound{ 0.3 };
   int               m_FairingIterations{ 10 };

@@ -7,6 +7,7 @@
 #include "boneMeshQualityFilter.h"
 
 #include <optional>
+#include <string>
 
 namespace bone
 {
@@ -22,6 +23,20 @@ const ContourStack *
 MeshQualityFilter<TMesh>::GetContours() const
 {
   return dynamic_cast<const ContourStack *>(this->ProcessObject::GetInput("Contours"));
+}
+
+template <typename TMesh>
+void
+MeshQualityFilter<TMesh>::SetLabelImage(const LabelImageType * labels)
+{
+  this->ProcessObject::SetInput("LabelImage", const_cast<LabelImageType *>(labels));
+}
+
+template <typename TMesh>
+auto
+MeshQualityFilter<TMesh>::GetLabelImage() const -> const LabelImageType *
+{
+  return dynamic_cast<const LabelImageType *>(this->ProcessObject::GetInput("LabelImage"));
 }
 
 template <typename TMesh>
@@ -78,6 +93,18 @@ MeshQualityFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction
     shape.emplace(*this->GetContours());
     parameters.shape = &*shape;
   }
+  LabelOutline outline;
+  if (this->GetLabelImage())
+  {
+    outline = FindOutline(*this->GetLabelImage(), m_Label);
+    if (outline.voxels.empty())
+    {
+      itkExceptionMacro("The input LabelImage has no outline of "
+                        << (m_Label == 0 ? "any label" : "label " + std::to_string(m_Label))
+                        << "; set Label to one that it has.");
+    }
+    parameters.outline = &outline;
+  }
   parameters.slices = this->GetInput()->GetArrays().slice;
   m_Report = ImproveMesh(complex, parameters, progress);
 }
@@ -87,6 +114,7 @@ void
 MeshQualityFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
+  os << indent << "Label: " << m_Label << std::endl;
   os << indent << "Iterations: " << m_Iterations << std::endl;
   os << indent << "DistanceBound: " << m_DistanceBound << std::endl;
   os << indent << "FairingIterations: " << m_FairingIterations << std::endl;

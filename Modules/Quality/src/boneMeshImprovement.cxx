@@ -6,6 +6,7 @@
 #include "boneContourFlips.h"
 #include "boneInteriorRefinement.h"
 #include "boneSharpEdges.h"
+#include "boneSideKeeper.h"
 #include "boneSurfaceFit.h"
 #include "boneVolumeKeeper.h"
 
@@ -27,6 +28,8 @@ constexpr int    SliverPasses = 2;
 constexpr int FitsToFlip = 2;
 /** From one additional fit to the next. */
 constexpr double StiffnessFactor = 1.3;
+/** Smallest angle, rad, that points may leave where they are put on the right side of voxels. */
+constexpr double SideAngle = 0.13;
 /** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
 constexpr double SurfaceFactor = 1.5;
 
@@ -100,6 +103,18 @@ private:
     m_Volumes.Restore(m_Complex, m_Mover, keep);
   }
 
+  /** Puts the boundary on the right side of the centres of voxels, where these are known. */
+  void
+  RestoreSides()
+  {
+    if (m_Parameters.outline)
+    {
+      SideKeeper::Parameters keep;
+      keep.cosineFloor = std::cos(SideAngle);
+      SideKeeper(*m_Parameters.outline).Restore(m_Complex, m_Mover, keep);
+    }
+  }
+
   void
   Flip(double angle)
   {
@@ -157,7 +172,7 @@ private:
       SurfaceFitParameters fit;
       fit.stiffness = stiffness;
       fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-      FitSurfaces(m_Complex, m_Mover, m_First, m_Parameters.shape, fit);
+      FitSurfaces(m_Complex, m_Mover, { m_First, m_Parameters.shape, m_Parameters.outline }, fit);
       if (m_Parameters.shape)
       {
         ChangeEdges(stiffness);
@@ -167,6 +182,10 @@ private:
       {
         Flip(m_Parameters.targetAngle);
       }
+      if (pass + 1 == passes)
+      {
+        RestoreSides();
+      }
       if (pass + 1 == passes && passes < m_Parameters.fitPasses + m_Parameters.morePasses && IsRough())
       {
         stiffness *= StiffnessFactor;
@@ -174,6 +193,7 @@ private:
       }
     }
     RestoreVolumes(m_Parameters.surfaceAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
+    RestoreSides();
     constexpr double noSurfaces = 1.0;
     m_Optimizer.MarkAll();
     m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), noSurfaces);
@@ -224,8 +244,13 @@ private:
     m_Optimizer.MarkAll();
     for (int pass = 0; pass < SliverPasses; ++pass)
     {
+      const std::size_t before = m_Report.repairs + m_Report.optimized;
       Repair(angle);
       m_Report.optimized += m_Optimizer.Run(limit, limit);
+      if (m_Report.repairs + m_Report.optimized == before)
+      {
+        return;
+      }
       Flip(m_Parameters.targetAngle);
     }
   }

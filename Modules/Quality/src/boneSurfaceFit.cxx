@@ -4,7 +4,9 @@
 #include "boneSurfaceFit.h"
 
 #include "boneContourSamples.h"
+#include "boneParallelFor.h"
 #include "boneSurfaceBending.h"
+#include "boneTriangleTree.h"
 
 #include <array>
 #include <cmath>
@@ -18,6 +20,8 @@ namespace
 constexpr double ShortestMove = 2e-3;
 /** Weight of what lies between slices, where contours are known, next to the contours themselves. */
 constexpr double WeightBetweenSlices = 0.1;
+/** Weight of a label's outline next to the contours. */
+constexpr double WeightOfOutline = 0.2;
 
 using Barycentric = std::array<double, 3>;
 
@@ -44,72 +48,145 @@ ToShape(const ContourShape & shape, int level, const Vector3 & x, const Vector3 
 
 using Springs = std::vector<SurfaceBending::Spring>;
 
-/** Springs from triangles to the shape between slices, or where there is none to the first surfaces.
- * \param edge  the mean length of the triangles' edges. */
-Springs
-SpringsOfTriangles(const TetraComplex &  complex,
-                   const SurfaceTarget & target,
-                   const ContourShape *  shape,
-                   double &              edge)
+/** A triangle of a surface that is not cut flat, outward from the cell that carries it. */
+struct Face
 {
-  const auto & x = complex.Points();
-  Springs      springs;
-  const auto & samples = shape ? OneSample : ThreeSamples;
-  const double share = (shape ? WeightBetweenSlices : 1.0) / static_cast<double>(samples.size());
-  double       edges = 0.0;
-  std::size_t  count = 0;
+  TriangleIds ids;
+  int         surface;
+};
+
+std::vector<Face>
+FacesOf(const TetraComplex & complex)
+{
+  std::vector<Face> faces;
   for (IdType t = 0; t < complex.Size(); ++t)
   {
     for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
     {
       const int surface = complex.Carries(t, i) ? complex.FaceSurfaces(t)[i] : -1;
-      if (surface < 0 || complex.Surfaces().surfaces[surface].flat >= 0)
+      if (surface >= 0 && complex.Surfaces().surfaces[surface].flat < 0)
       {
-        continue;
-      }
-      const Id4 &       c = complex.Cell(t);
-      const TriangleIds f = { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] };
-      const Vector3     normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
-      const double      area = normal.norm();
-      if (!(area > 0))
-      {
-        continue;
-      }
-      // Faces look outward from the cell that carries them, that of the smaller region: into the level at interfaces.
-      const bool   boundary = complex.Surfaces().surfaces[surface].IsBoundary();
-      const double sign = boundary ? 1.0 : -1.0;
-      const int    level = boundary ? 1 : complex.Surfaces().surfaces[surface].inner;
-      edges += (x[f[1]] - x[f[0]]).norm();
-      ++count;
-      for (const Barycentric & sample : samples)
-      {
-        const Vector3 place = sample[0] * x[f[0]] + sample[1] * x[f[1]] + sample[2] * x[f[2]];
-        const auto    toShape = shape ? ToShape(*shape, level, place, normal * (sign / area)) : std::nullopt;
-        const double distance = toShape ? *toShape * sign : (target.Nearest(surface, place) - place).dot(normal) / area;
-        springs.push_back({ f, sample, share * area / 2.0, place + normal * (distance / area) });
+        const Id4 & c = complex.Cell(t);
+        faces.push_back({ { c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] }, surface });
       }
     }
   }
-  edge = count > 0 ? edges / static_cast<double>(count) : 0.0;
+  return faces;
+}
+
+double
+MeanEdge(const std::vector<Face> & faces, const std::vector<Vector3> & x)
+{
+  double sum = 0.0;
+  for (const Face & face : faces)
+  {
+    sum += (x[face.ids[1]] - x[face.ids[0]]).norm();
+  }
+  return faces.empty() ? 0.0 : sum / static_cast<double>(faces.size());
+}
+
+/** Springs from triangles to the shape between slices, or where there is none to the first surfaces. */
+Springs
+SpringsOfTriangles(const TetraComplex & complex, const std::vector<Face> & faces, const SurfaceFitTarget & target)
+{
+  const auto & x = complex.Points();
+  const auto & samples = target.shape ? OneSample : ThreeSamples;
+  const auto   count = samples.size();
+  const double share = (target.shape ? WeightBetweenSlices : 1.0) / static_cast<double>(count);
+  Springs      springs(faces.size() * count);
+  ParallelFor(faces.size(), [&](std::size_t k) {
+    const TriangleIds & f = faces[k].ids;
+    const Vector3       normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
+    const double        area = normal.norm();
+    // Faces look outward from the cell that carries them, that of the smaller region: into the level at interfaces.
+    const auto & surface = complex.Surfaces().surfaces[faces[k].surface];
+    const double sign = surface.IsBoundary() ? 1.0 : -1.0;
+    const int    level = surface.IsBoundary() ? 1 : surface.inner;
+    for (std::size_t s = 0; s < count; ++s)
+    {
+      const Barycentric &      sample = samples[s];
+      const Vector3            place = sample[0] * x[f[0]] + sample[1] * x[f[1]] + sample[2] * x[f[2]];
+      SurfaceBending::Spring & spring = springs[k * count + s];
+      spring = { f, sample, 0.0, place };
+      if (area > 0)
+      {
+        const auto toShape = target.shape ? ToShape(*target.shape, level, place, normal * (sign / area)) : std::nullopt;
+        const double distance =
+          toShape ? *toShape * sign : (target.first.Nearest(faces[k].surface, place) - place).dot(normal) / area;
+        spring.weight = share * area / 2.0;
+        spring.target += normal * (distance / area);
+      }
+    }
+  });
   return springs;
+}
+
+/** Barycentric coordinates of a place on a triangle. */
+Barycentric
+SharesAt(const std::vector<Vector3> & x, const TriangleIds & f, const Vector3 & place)
+{
+  const Vector3 normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
+  Barycentric   shares{};
+  for (int k = 0; k < 3; ++k)
+  {
+    shares[k] = (x[f[(k + 1) % 3]] - place).cross(x[f[(k + 2) % 3]] - place).dot(normal) / normal.squaredNorm();
+  }
+  return shares;
 }
 
 /** Springs from triangles to the points of contours that belong to them. */
 void
 AddContours(const TetraComplex & complex, const ContourSamples & contours, Springs & springs)
 {
-  const auto & x = complex.Points();
   for (const ContourSamples::Match & match : contours.FindMatches(complex))
   {
-    const TriangleIds & f = match.triangle;
-    const double        area = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).dot(match.normal);
-    Barycentric         shares{};
-    for (int k = 0; k < 3; ++k)
+    const Barycentric shares = SharesAt(complex.Points(), match.triangle, match.foot);
+    springs.push_back({ match.triangle, shares, match.weight, match.sample->place });
+  }
+}
+
+/** Springs from triangles of the boundary to the faces of a label's outline that look the same way.
+ * \param normal  of the slices of contours, of which the faces are to tell what lies between them; null: there are
+ * none. */
+void
+AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vector3 * normal, Springs & springs)
+{
+  constexpr double                    farthest = 1.5, leastSlope = 0.3, leastWeight = 0.1;
+  const auto &                        x = complex.Points();
+  const auto                          ids = BoundaryFaces(complex);
+  std::vector<TriangleTree::Triangle> triangles;
+  for (const TriangleIds & f : ids)
+  {
+    triangles.push_back({ x[f[0]], x[f[1]], x[f[2]] });
+  }
+  const TriangleTree                                 tree(std::move(triangles));
+  std::vector<std::optional<SurfaceBending::Spring>> found(outline.faces.size());
+  ParallelFor(found.size(), [&](std::size_t k) {
+    const LabelOutline::Face & face = outline.faces[k];
+    const double               weight = normal ? std::pow(normal->dot(face.outward), 2) : 1.0;
+    if (weight < leastWeight)
     {
-      const Vector3 &a = x[f[(k + 1) % 3]], &b = x[f[(k + 2) % 3]];
-      shares[k] = (a - match.foot).cross(b - match.foot).dot(match.normal) / area;
+      return;
     }
-    springs.push_back({ f, shares, match.weight, match.sample->place });
+    const auto nearest = tree.FindNearest(face.centre);
+    if (nearest.triangle < 0 || nearest.squaredDistance > farthest * farthest)
+    {
+      return;
+    }
+    const TriangleIds & f = ids[nearest.triangle];
+    const double        slope = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).normalized().dot(face.outward);
+    if (slope > leastSlope)
+    {
+      const double total = WeightOfOutline * weight * slope * face.area;
+      found[k] = SurfaceBending::Spring{ f, SharesAt(x, f, nearest.point), total, face.centre };
+    }
+  });
+  for (const auto & spring : found)
+  {
+    if (spring)
+    {
+      springs.push_back(*spring);
+    }
   }
 }
 
@@ -132,27 +209,32 @@ FreePoints(const TetraComplex & complex, const Springs & springs)
 std::size_t
 FitSurfaces(TetraComplex &               complex,
             PointMover &                 mover,
-            const SurfaceTarget &        first,
-            const ContourShape *         shape,
+            const SurfaceFitTarget &     target,
             const SurfaceFitParameters & parameters)
 {
   constexpr int        halvings = 3;
   std::size_t          moves = 0;
+  const ContourShape * shape = target.shape;
   const auto           contours = shape ? std::make_optional<ContourSamples>(complex, *shape) : std::nullopt;
   const SurfaceBending bending(complex, parameters.stiffness);
   for (int step = 0; step < parameters.steps; ++step)
   {
-    double  edge = 0.0;
-    Springs springs = SpringsOfTriangles(complex, first, shape, edge);
+    const auto   faces = FacesOf(complex);
+    const double shortest = ShortestMove * MeanEdge(faces, complex.Points());
+    Springs      springs = SpringsOfTriangles(complex, faces, target);
     if (contours)
     {
       AddContours(complex, *contours, springs);
+    }
+    if (target.outline)
+    {
+      AddOutline(complex, *target.outline, shape ? &shape->GetNormal() : nullptr, springs);
     }
     const auto targets = bending.Solve(complex.Points(), FreePoints(complex, springs), springs);
     for (IdType p = 0; p < static_cast<IdType>(targets.size()); ++p)
     {
       Vector3 move = targets[p] - complex.Points()[p];
-      for (int half = 0; half < halvings && move.norm() > ShortestMove * edge; ++half, move /= 2.0)
+      for (int half = 0; half < halvings && move.norm() > shortest; ++half, move /= 2.0)
       {
         if (mover.TryMove(p, complex.Points()[p] + move, parameters.cosineFloor) == MeshOperation::Done)
         {

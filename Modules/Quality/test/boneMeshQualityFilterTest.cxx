@@ -7,8 +7,10 @@
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"
 #include "boneTetraSwapFilter.h"
+#include "boneTriangleDistance.h"
 
 #include <gtest/gtest.h>
+#include <itkImageRegionIteratorWithIndex.h>
 
 #include <algorithm>
 #include <map>
@@ -261,6 +263,90 @@ TEST(MeshQualityFilter, SurfacesAreFittedToContours)
   }
 }
 
+namespace
+{
+/** Voxels of a ball, labelled 4. */
+itk::Image<short, 3>::Pointer
+LabelOfBall(const Vector3 & centre, double radius, double spacing)
+{
+  using Image = itk::Image<short, 3>;
+  const auto    count = static_cast<itk::SizeValueType>(std::ceil(34.0 / spacing));
+  const Vector3 origin = Vector3::Constant(-17.0);
+  auto          image = Image::New();
+  image->SetRegions(Image::SizeType{ { count, count, count } });
+  image->SetSpacing(Vector3::Constant(spacing).eval().data());
+  image->SetOrigin(origin.data());
+  image->Allocate();
+  for (itk::ImageRegionIteratorWithIndex<Image> it(image, image->GetBufferedRegion()); !it.IsAtEnd(); ++it)
+  {
+    const auto place = image->TransformIndexToPhysicalPoint<double>(it.GetIndex());
+    it.Set((Vector3(place[0], place[1], place[2]) - centre).norm() < radius ? 4 : 0);
+  }
+  return image;
+}
+} // namespace
+
+TEST(MeshQualityFilter, SurfacesAreFittedToLabelsBetweenSlices)
+{
+  // A ball, contours of it, and voxels of one higher: contours know nothing of that, and of it alone.
+  constexpr double shift = 0.8, radius = 12.0;
+  const auto       mesh = test::MakeBall(4, { 1, 1, 2 }, radius, 0.1, 2);
+  auto             stack = ContourStack::New();
+  stack->SetSlices(CirclesOfBall(Vector3::Zero(), radius));
+  const auto top = [](const MeshArrays & arrays) {
+    double sum = 0.0, area = 0.0;
+    for (const auto & t : Boundary(arrays))
+    {
+      const Vector3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+      const double  weight = std::max(0.0, normal.z()) * std::max(0.0, normal.normalized().z() - 0.9);
+      sum += weight * (t[0] + t[1] + t[2]).z() / 3.0;
+      area += weight;
+    }
+    return sum / area;
+  };
+  double heights[3];
+  for (int way = 0; way < 3; ++way)
+  {
+    auto filter = MeshQualityFilter<MeshType>::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetContours(stack);
+    filter->SetRounds(1);
+    filter->SetLabelImage(way == 0 ? nullptr : LabelOfBall({ 0, 0, way == 1 ? 0.0 : shift }, radius, 2.0).GetPointer());
+    filter->SetLabel(4);
+    filter->Update();
+    const auto made = filter->GetOutput()->GetArrays();
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+    heights[way] = top(made);
+  }
+  EXPECT_NEAR(heights[1], heights[0], 0.15);
+  EXPECT_GT(heights[2], heights[1] + 0.1);
+}
+
+TEST(MeshQualityFilter, TheBoundaryIsPutOnItsSideOfVoxels)
+{
+  // The boundary passes some centres by little: with the labels it has fewer of them on the wrong side.
+  const auto  mesh = test::MakeBall(4, { 1, 1, 2 }, 12.0, 0.1, 4);
+  const auto  labels = LabelOfBall({ 0.3, 0.2, 0.1 }, 12.0, 1.0);
+  const auto  outline = FindOutline(*labels, 4);
+  std::size_t wrong[2];
+  for (const bool with : { false, true })
+  {
+    auto filter = MeshQualityFilter<MeshType>::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetLabelImage(with ? labels.GetPointer() : nullptr);
+    filter->Update();
+    const auto             made = filter->GetOutput()->GetArrays();
+    const TriangleDistance distance(made.points, BoundaryFaces(made));
+    wrong[with] = 0;
+    for (const auto & voxel : outline.voxels)
+    {
+      wrong[with] += (distance.FindNearest(voxel.centre).distance < 0) != voxel.inside;
+    }
+    EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
+  }
+  EXPECT_LT(wrong[1], wrong[0]);
+}
+
 TEST(MeshQualityFilter, LongCellsInsideARegionAreHalvedUnlessNotWanted)
 {
   // A thick body whose surface is sampled finely.
@@ -316,6 +402,10 @@ TEST(MeshQualityFilter, RefusesBadParameters)
   refuses([](auto * f) { f->SetSliverFactor(0.9); });
   refuses([](auto * f) { f->SetStiffness(-0.1); });
   refuses([](auto * f) { f->SetInput(nullptr); });
+  refuses([](auto * f) {
+    f->SetLabelImage(LabelOfBall(Vector3::Zero(), 10.0, 2.0));
+    f->SetLabel(5);
+  });
 }
 
 TEST(TetraSwapFilter, MovesNoPointAndNeverLowersTheWorstAngle)
