@@ -192,7 +192,7 @@ def angles(row):
 
 def report(rows, methods):
     out = ["# Mesh quality\n", "Written by `Testing/Validation/quality.py`: bones tiled as `bonetk build` does by default, then the quality",
-           "stage with its defaults (distance bound: half a pixel, at most 0.3 mm; fitted to the contours of all slices).\n", "## Angles\n",
+           "stage with its defaults (distance bound: half a pixel, at most 0.3 mm; fitted to the contours of all slices and the label).\n", "## Angles\n",
            "Smallest dihedral angle, degrees: cortical: least; % of cells below 2; mean, and what thickness over edge allows on",
            "average (mean of the three cells of a prism of that height). Other regions: least; % of cells below 8; mean.\n",
            "| bone | | cells | cortical | spongy | medullary |", "|---|---|---|---|---|---|"]
@@ -204,7 +204,7 @@ def report(rows, methods):
             "largest; agreement with the label map (distances both ways, means); turn between neighbouring boundary triangles, mean,",
             "of all edges and of those within a slice, where slices meet (degrees). Own is that of the same triangles with their",
             "points on the surface of the label map smoothed by one voxel: what the bone's shape has at these edges. Excess is",
-            "the roughness across slices less that. Seconds are processor time of one core, under load.\n",
+            "the roughness across slices less that. Seconds are of the clock, on two cores.\n",
             "| bone | valid | volume, % | regions, % | moved, mm | Dice | to label, mm | from label, mm | roughness, all | "
             "across slices | own | excess | s | not met |", "|" + "---|" * 14]
     for name, row in rows:
@@ -215,7 +215,7 @@ def report(rows, methods):
             f"{row['before.to_label']:.2f} → {row['after.to_label']:.2f} | {row['before.from_label']:.2f} → "
             f"{row['after.from_label']:.2f} | {row['before.roughness']:.1f} → {row['after.roughness']:.1f} | "
             f"{row['before.roughness_across']:.1f} → {row['after.roughness_across']:.1f} | {row['before.own']:.1f} → {row['after.own']:.1f} | "
-            f"{row.excess('before'):.1f} → {row.excess('after'):.1f} | {row['cpu_seconds']:.1f} | "
+            f"{row.excess('before'):.1f} → {row.excess('after'):.1f} | {row['seconds']:.1f} | "
             f"{', '.join(row.failures())} |")
     out += ["", "## The paper's Figures 5 to 7: three methods on the clinical hip\n",
             "| method | iterations | volume, % | inverted cells |", "|---|---|---|---|"]
