@@ -33,11 +33,9 @@ struct ImprovementParameters
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
   double stiffness{ 0.08 };       ///< of surfaces in that fit, see SurfaceBending
 
-  const ContourShape * shape{ nullptr }; ///< what surfaces are fitted to; none: the first surfaces
-  const LabelOutline * outline{
-    nullptr
-  };                       ///< of the bone in an image: surfaces are fitted to it too, and put on its side
-  std::vector<int> slices; ///< of the mesh's points; empty: turns of all edges count, not those across slices
+  const ContourShape * shape{ nullptr };   ///< what surfaces are fitted to; none: the first surfaces
+  const LabelOutline * outline{ nullptr }; ///< of the bone in an image, if known: the boundary is fitted to it too
+  std::vector<int>     slices; ///< of the mesh's points; empty: turns of all edges count, not those across slices
 };
 
 struct ImprovementReport

@@ -5,7 +5,9 @@
 
 #include <itkImageRegionConstIteratorWithIndex.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace bone
 {
@@ -31,30 +33,37 @@ FindOutline(const LabelImage & labels, short label)
   const double  volume = spacing[0] * spacing[1] * spacing[2];
   LabelOutline  outline;
   outline.spacing = std::cbrt(volume);
+  std::vector<itk::OffsetValueType> others; // places in the buffer
   for (itk::ImageRegionConstIteratorWithIndex<LabelImage> it(&labels, region); !it.IsAtEnd(); ++it)
   {
-    const bool inside = isInside(it.Get());
-    bool       atOutline = false;
+    if (!isInside(it.Get()))
+    {
+      continue;
+    }
+    const std::size_t before = outline.faces.size();
+    const Vector3     centre = CentreOf(labels, it.GetIndex());
     for (int k = 0; k < faces; ++k)
     {
       const unsigned int axis = k / 2;
       auto               index = it.GetIndex();
       index[axis] += k % 2 == 0 ? -1 : 1;
-      if (!region.IsInside(index) || isInside(labels.GetPixel(index)) == inside)
+      if (region.IsInside(index) && !isInside(labels.GetPixel(index)))
       {
-        continue;
-      }
-      atOutline = true;
-      if (inside)
-      {
-        const Vector3 centre = CentreOf(labels, it.GetIndex()), other = CentreOf(labels, index);
+        const Vector3 other = CentreOf(labels, index);
         outline.faces.push_back({ 0.5 * (centre + other), (other - centre).normalized(), volume / spacing[axis] });
+        others.push_back(labels.ComputeOffset(index));
       }
     }
-    if (atOutline)
+    if (outline.faces.size() > before)
     {
-      outline.voxels.push_back({ CentreOf(labels, it.GetIndex()), inside });
+      outline.voxels.push_back({ centre, true });
     }
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  for (const itk::OffsetValueType place : others)
+  {
+    outline.voxels.push_back({ CentreOf(labels, labels.ComputeIndex(place)), false });
   }
   return outline;
 }
