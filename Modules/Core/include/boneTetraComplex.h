@@ -6,6 +6,7 @@
 
 #include "boneSurfaceComplex.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace bone
@@ -46,10 +47,30 @@ public:
   {
     return m_Points;
   }
+  /** Moves a point: all cells around it have changed then. */
   void
   MovePoint(IdType p, const Vector3 & x)
   {
     m_Points[p] = x;
+    NoteChange(m_Star[p]);
+  }
+  /** Puts a point somewhere for a trial, of which the mesh takes no note; MovePoint or another trial must end it. */
+  void
+  TryPoint(IdType p, const Vector3 & x)
+  {
+    m_Points[p] = x;
+  }
+  /** Changes so far, by which the next can be told from those before: counts from 1. */
+  std::uint32_t
+  Clock() const
+  {
+    return m_Clock;
+  }
+  /** Whether a cell at the point has come, gone or changed its shape after the clock stood at `time`. */
+  bool
+  HasChanged(IdType p, std::uint32_t time) const
+  {
+    return m_Changed[p] > time;
   }
   IdType
   Size() const
@@ -207,6 +228,8 @@ private:
   void
   EraseFromStar(IdType p, IdType t);
   void
+  NoteChange(const std::vector<IdType> & cells);
+  void
   SetNeighbor(IdType t, IdType oldNeighbor, IdType newNeighbor, int surface);
 
   std::vector<Vector3>             m_Points;
@@ -217,7 +240,9 @@ private:
   std::vector<std::vector<IdType>> m_Star;
   std::vector<IdType>              m_Parent; ///< of each added point, an end of the edge it was put on
   IdType                           m_AliveCount{ 0 };
-  mutable std::vector<char>        m_Mark; ///< of points, for LinksMeetInEdgeLink; else 0
+  std::uint32_t                    m_Clock{ 1 };
+  std::vector<std::uint32_t>       m_Changed; ///< of points: the clock when a cell there last changed
+  mutable std::vector<char>        m_Mark;    ///< of points, for LinksMeetInEdgeLink; else 0
 };
 
 /** Triangles of the boundary, outward. */

@@ -91,10 +91,52 @@ struct FlipReport
 /** Called after each flip that was done. */
 using FlipObserver = std::function<void(const FlipResult &)>;
 
+/** \class FlipMemory
+ * \brief When flips were refused, by the clock of one complex: a flip is tried again once a cell that it would touch
+ * has changed. */
+class FlipMemory
+{
+public:
+  /** Makes room for all slots of cells. */
+  void
+  Reserve(const TetraComplex & complex);
+  bool
+  IsEdgeRefused(const TetraComplex & complex, IdType t, int edge) const;
+  bool
+  IsFaceRefused(const TetraComplex & complex, IdType t, int face) const;
+  bool
+  IsCellRefused(const TetraComplex & complex, IdType t) const;
+  void
+  RefuseEdge(const TetraComplex & complex, IdType t, IdType a, IdType b);
+  /** Of both cells at the face. */
+  void
+  RefuseFace(const TetraComplex & complex, IdType t, int face);
+  /** All flips that remove an edge or a face of the cell. */
+  void
+  RefuseCell(const TetraComplex & complex, IdType t);
+
+private:
+  struct Times
+  {
+    std::array<std::uint32_t, 6> edges{};
+    std::array<std::uint32_t, 4> faces{};
+    std::uint32_t                cell{ 0 };
+  };
+
+  static int
+  EdgeOf(const TetraComplex & complex, IdType t, IdType a, IdType b);
+
+  std::vector<Times> m_Cells;
+};
+
 /** Flips at cells below the target angle, the worst first, until a pass changes nothing. Every flip strictly raises the
- * smallest angle of the cells it touches. */
+ * smallest angle of the cells it touches.
+ * \param memory  of earlier calls with the same complex and kind of flips, if they are to be remembered. */
 FlipReport
-ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const FlipObserver & observer = {});
+ImproveByFlips(TetraComplex &         complex,
+               const FlipParameters & parameters,
+               const FlipObserver &   observer = {},
+               FlipMemory *           memory = nullptr);
 } // namespace bone
 
 #endif

@@ -125,20 +125,30 @@ SegmentMeetsTriangle(const Vector3 & p, const Vector3 & q, const Vector3 & a, co
   return (o1 >= 0 && o2 >= 0 && o3 >= 0) || (o1 <= 0 && o2 <= 0 && o3 <= 0);
 }
 
-bool
-BoxesMeet(const TriangleIds & s, const TriangleIds & t, const std::vector<Vector3> & points)
+struct Box
 {
-  for (int k = 0; k < 3; ++k)
+  Vector3 lower;
+  Vector3 upper;
+
+  Box(const TriangleIds & t, const std::vector<Vector3> & points)
+    : lower(points[t[0]].cwiseMin(points[t[1]]).cwiseMin(points[t[2]]))
+    , upper(points[t[0]].cwiseMax(points[t[1]]).cwiseMax(points[t[2]]))
+  {}
+
+  bool
+  Meets(const TriangleIds & t, const std::vector<Vector3> & points) const
   {
-    const double s0 = points[s[0]][k], s1 = points[s[1]][k], s2 = points[s[2]][k];
-    const double t0 = points[t[0]][k], t1 = points[t[1]][k], t2 = points[t[2]][k];
-    if (std::max({ s0, s1, s2 }) < std::min({ t0, t1, t2 }) || std::max({ t0, t1, t2 }) < std::min({ s0, s1, s2 }))
+    const Vector3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+    for (int k = 0; k < 3; ++k)
     {
-      return false;
+      if (std::min({ a[k], b[k], c[k] }) > upper[k] || std::max({ a[k], b[k], c[k] }) < lower[k])
+      {
+        return false;
+      }
     }
+    return true;
   }
-  return true;
-}
+};
 
 /** Two triangles on one edge cross where they lie in one plane on the same side of it. */
 bool
@@ -157,8 +167,8 @@ template <typename TVisit>
 void
 ForEachCell(const TriangleIds & t, const std::vector<Vector3> & points, double scale, TVisit visit)
 {
-  const Vector3           lower = points[t[0]].cwiseMin(points[t[1]]).cwiseMin(points[t[2]]) * scale;
-  const Vector3           upper = points[t[0]].cwiseMax(points[t[1]]).cwiseMax(points[t[2]]) * scale;
+  const Box               box(t, points);
+  const Vector3           lower = box.lower * scale, upper = box.upper * scale;
   const auto              cell = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
   constexpr std::uint64_t mask = (1u << 21) - 1;
   for (std::int64_t i = cell(lower.x()); i <= cell(upper.x()); ++i)
@@ -264,12 +274,13 @@ SurfaceGrid::Erase(const TriangleIds & triangle, const std::vector<Vector3> & po
 bool
 SurfaceGrid::Crosses(const TriangleIds & triangle, IdType ignored, const std::vector<Vector3> & points) const
 {
-  bool crosses = false;
+  bool      crosses = false;
+  const Box box(triangle, points);
   ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
     const auto cell = m_Cells.find(key);
     crosses =
       cell != m_Cells.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const TriangleIds & t) {
-        return !Has(t, ignored) && BoxesMeet(triangle, t, points) && TrianglesCross(triangle, t, points);
+        return !Has(t, ignored) && box.Meets(t, points) && TrianglesCross(triangle, t, points);
       });
     return crosses;
   });
@@ -289,11 +300,12 @@ FindCrossingTriangles(const std::vector<TriangleIds> & triangles, const std::vec
   std::vector<std::array<int, 2>>                     pairs;
   for (int i = 0; i < static_cast<int>(triangles.size()); ++i)
   {
+    const Box box(triangles[i], points);
     ForEachCell(triangles[i], points, scale, [&](std::uint64_t key) {
       auto & cell = cells[key];
       for (int j : cell)
       {
-        if (BoxesMeet(triangles[i], triangles[j], points) && TrianglesCross(triangles[i], triangles[j], points))
+        if (box.Meets(triangles[j], points) && TrianglesCross(triangles[i], triangles[j], points))
         {
           pairs.push_back({ j, i });
         }

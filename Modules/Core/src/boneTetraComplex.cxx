@@ -146,6 +146,7 @@ TetraComplex::TetraComplex(const MeshArrays & mesh)
   , m_Region(mesh.region.empty() ? std::vector<int>(mesh.tetrahedra.size(), Cortical) : mesh.region)
   , m_Star(mesh.points.size())
   , m_AliveCount(static_cast<IdType>(mesh.tetrahedra.size()))
+  , m_Changed(mesh.points.size(), 0)
 {
   if (mesh.neighbors.empty())
   {
@@ -228,6 +229,19 @@ TetraComplex::SetNeighbor(IdType t, IdType oldNeighbor, IdType newNeighbor, int 
   const int i = static_cast<int>(std::find(neighbors.begin(), neighbors.end() - 1, oldNeighbor) - neighbors.begin());
   neighbors[i] = newNeighbor;
   m_Surfaces.faceSurface[t][i] = surface;
+}
+
+void
+TetraComplex::NoteChange(const std::vector<IdType> & cells)
+{
+  ++m_Clock;
+  for (IdType t : cells)
+  {
+    for (IdType p : m_Cells[t])
+    {
+      m_Changed[p] = m_Clock;
+    }
+  }
 }
 
 std::vector<IdType>
@@ -345,6 +359,7 @@ TetraComplex::ReplaceAcross(const std::vector<IdType> & removed,
                             const std::vector<int> &    regions,
                             int                         surface)
 {
+  NoteChange(removed);
   std::vector<OuterFace>    outer = TakeOut(removed);
   const std::vector<IdType> ids = AllocateSlots(removed, created.size());
   for (std::size_t k = 0; k < ids.size(); ++k)
@@ -357,6 +372,7 @@ TetraComplex::ReplaceAcross(const std::vector<IdType> & removed,
     }
   }
   LinkFaces(ids, outer, surface);
+  NoteChange(ids);
   return ids;
 }
 
@@ -366,6 +382,7 @@ TetraComplex::SplitEdge(IdType a, IdType b, const Vector3 & x)
   const IdType n = static_cast<IdType>(m_Points.size());
   m_Points.push_back(x);
   m_Star.emplace_back();
+  m_Changed.push_back(0);
   m_Surfaces.dimension.push_back(3);
   m_Surfaces.curve.emplace_back();
   m_Parent.push_back(a);
@@ -466,6 +483,7 @@ TetraComplex::Collapse(IdType v, IdType w)
 {
   std::vector<IdType>       changed;
   const std::vector<IdType> star = std::move(m_Star[v]);
+  NoteChange(star);
   m_Star[v].clear();
   for (IdType t : star)
   {

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 namespace bone
 {
@@ -64,8 +63,26 @@ Commit(TetraComplex & complex, std::vector<IdType> removed, const std::vector<Id
 /** Cells around edge (a, b) in ring order and the ring's points; cells[k] lies between points k and k + 1. */
 struct Ring
 {
-  std::vector<IdType> cells;
-  std::vector<IdType> points;
+  std::array<IdType, MaximumEdgeRing> cells;
+  std::array<IdType, MaximumEdgeRing> points;
+  int                                 cellCount{ 0 };
+  int                                 pointCount{ 0 };
+
+  void
+  AddCell(IdType t)
+  {
+    cells[cellCount++] = t;
+  }
+  void
+  AddPoint(IdType p)
+  {
+    points[pointCount++] = p;
+  }
+  void
+  TurnPoints()
+  {
+    std::reverse(points.begin(), points.begin() + pointCount);
+  }
 };
 
 /** Walks around the edge from a cell that has it. Surface where it lies on one, Quality where the ring is too long. */
@@ -87,12 +104,12 @@ FindRing(const TetraComplex & complex, IdType a, IdType b, IdType t, Ring & ring
     {
       return MeshOperation::Surface;
     }
-    if (static_cast<int>(ring.cells.size()) == MaximumEdgeRing)
+    if (ring.cellCount == MaximumEdgeRing)
     {
       return MeshOperation::Quality;
     }
-    ring.cells.push_back(t);
-    ring.points.push_back(complex.Cell(t)[from]);
+    ring.AddCell(t);
+    ring.AddPoint(complex.Cell(t)[from]);
     const IdType pivot = complex.Cell(t)[to];
     // The next cell lies across the face without `from`; there, `pivot` is the point to leave from.
     t = complex.Neighbors(t)[from];
@@ -101,12 +118,12 @@ FindRing(const TetraComplex & complex, IdType a, IdType b, IdType t, Ring & ring
     {
       ++to;
     }
-  } while (t != ring.cells.front());
+  } while (t != ring.cells[0]);
   // Ring points must turn positively around a -> b.
   const auto & p = complex.Points();
   if (Orient3D(p[a], p[ring.points[0]], p[ring.points[1]], p[b]) < 0)
   {
-    std::reverse(ring.points.begin(), ring.points.end());
+    ring.TurnPoints();
   }
   return MeshOperation::Done;
 }
@@ -119,14 +136,14 @@ public:
   RingTriangulation(const TetraComplex & complex, const Ring & ring, IdType a, IdType b, double limit)
     : m_Complex(complex)
     , m_Points(ring.points)
+    , m_Count(ring.pointCount)
     , m_A(a)
     , m_B(b)
     , m_Limit(limit)
   {
-    const int n = static_cast<int>(m_Points.size());
-    for (int width = 2; width < n; ++width)
+    for (int width = 2; width < m_Count; ++width)
     {
-      for (int i = 0; i + width < n; ++i)
+      for (int i = 0; i + width < m_Count; ++i)
       {
         Solve(i, i + width);
       }
@@ -137,14 +154,14 @@ public:
   double
   Worst() const
   {
-    return m_Cost[0][m_Points.size() - 1];
+    return m_Cost[0][m_Count - 1];
   }
 
   std::vector<Id4>
   Cells() const
   {
     std::vector<Id4> cells;
-    Collect(0, static_cast<int>(m_Points.size()) - 1, cells);
+    Collect(0, m_Count - 1, cells);
     return cells;
   }
 
@@ -201,13 +218,14 @@ private:
     Collect(k, j, cells);
   }
 
-  const TetraComplex &        m_Complex;
-  const std::vector<IdType> & m_Points;
-  IdType                      m_A;
-  IdType                      m_B;
-  double                      m_Limit;
-  double                      m_Cost[MaximumEdgeRing][MaximumEdgeRing];
-  int                         m_Split[MaximumEdgeRing][MaximumEdgeRing];
+  const TetraComplex &                        m_Complex;
+  const std::array<IdType, MaximumEdgeRing> & m_Points;
+  int                                         m_Count;
+  IdType                                      m_A;
+  IdType                                      m_B;
+  double                                      m_Limit;
+  double                                      m_Cost[MaximumEdgeRing][MaximumEdgeRing];
+  int                                         m_Split[MaximumEdgeRing][MaximumEdgeRing];
 };
 
 /** Cells on one side of a surface edge, from its face with `from` to its other face; Surface where the walk meets
@@ -229,14 +247,14 @@ FindHalfRing(const TetraComplex & complex, IdType a, IdType b, IdType first, int
   int from = other(next);
   for (;;)
   {
-    ring.points.push_back(complex.Cell(t)[from]);
-    ring.cells.push_back(t);
+    ring.AddPoint(complex.Cell(t)[from]);
+    ring.AddCell(t);
     if (complex.FaceSurfaces(t)[from] >= 0)
     {
-      ring.points.push_back(complex.Cell(t)[next]);
+      ring.AddPoint(complex.Cell(t)[next]);
       return MeshOperation::Done;
     }
-    if (static_cast<int>(ring.cells.size()) == MaximumEdgeRing - 1)
+    if (ring.cellCount == MaximumEdgeRing - 1)
     {
       return MeshOperation::Quality;
     }
@@ -247,21 +265,20 @@ FindHalfRing(const TetraComplex & complex, IdType a, IdType b, IdType first, int
   }
 }
 
-/** Edge removal from a cell that has the edge: stars may be large. */
+/** Edge removal from a cell that has the edge: stars may be large. `ring` gets the cells that were looked at. */
 FlipResult
-RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell)
+RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell, Ring & ring)
 {
   FlipResult result;
-  Ring       ring;
   result.outcome = FindRing(complex, a, b, cell, ring);
   if (result.outcome != MeshOperation::Done)
   {
     return result;
   }
   double before = -1.0;
-  for (IdType t : ring.cells)
+  for (int k = 0; k < ring.cellCount; ++k)
   {
-    before = std::max(before, CellCosine(complex, t));
+    before = std::max(before, CellCosine(complex, ring.cells[k]));
   }
   const RingTriangulation triangulation(complex, ring, a, b, before - MinimumGain);
   if (!(triangulation.Worst() < before - MinimumGain))
@@ -269,73 +286,71 @@ RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell)
     result.outcome = MeshOperation::Quality;
     return result;
   }
-  return Commit(complex, ring.cells, triangulation.Cells(), before);
+  return Commit(complex, { ring.cells.begin(), ring.cells.begin() + ring.cellCount }, triangulation.Cells(), before);
 }
 
-/** Tries all flips at one cell; the first that is done ends it. An edge that was refused is not tried again until a
- * cell at it has changed. */
+/** Tries all flips at one cell; the first that is done ends it. */
 class CellImprover
 {
 public:
   CellImprover(TetraComplex &         complex,
                const FlipParameters & parameters,
+               FlipMemory &           memory,
                FlipReport &           report,
                const FlipObserver &   observer)
     : m_Complex(complex)
     , m_Parameters(parameters)
+    , m_Memory(memory)
     , m_Report(report)
     , m_Observer(observer)
-    , m_Changed(complex.Points().size(), 0)
   {}
 
   bool
   Run(IdType t)
   {
-    const Id4 cell = m_Complex.Cell(t);
-    for (const auto & edge : TetraEdges)
+    const Id4  cell = m_Complex.Cell(t);
+    const bool all = m_Parameters.cellCount == FlipCellCount::Any;
+    for (int e = 0; e < 6; ++e)
     {
-      const IdType a = cell[edge[0]], b = cell[edge[1]];
-      if (IsRefused(a, b))
+      const IdType a = cell[TetraEdges[e][0]], b = cell[TetraEdges[e][1]];
+      if (m_Memory.IsEdgeRefused(m_Complex, t, e))
       {
         continue;
       }
-      const std::size_t ring = m_Parameters.cellCount == FlipCellCount::Any ? 4 : RingLength(a, b);
+      const std::size_t ring = all ? 4 : RingLength(a, b);
       const bool        fewer =
         m_Parameters.cellCount != FlipCellCount::Same && m_Complex.AliveCells() > m_Parameters.minimumCells;
       if (ring > 4 || (ring < 4 && !fewer))
       {
         continue;
       }
-      if (Note(RemoveEdgeAt(m_Complex, a, b, t)))
+      Ring looked;
+      if (Note(RemoveEdgeAt(m_Complex, a, b, t, looked)))
       {
         return true;
       }
-      m_Refused[Key(a, b)] = m_Report.done;
+      m_Memory.RefuseEdge(m_Complex, t, a, b);
+      for (int k = 0; k < looked.cellCount; ++k)
+      {
+        m_Memory.RefuseEdge(m_Complex, looked.cells[k], a, b);
+      }
     }
-    for (int i = 0; i < 4 && m_Parameters.cellCount == FlipCellCount::Any; ++i)
+    for (int i = 0; i < 4 && all; ++i)
     {
-      if (Note(RemoveFace(m_Complex, t, i)))
+      if (!m_Memory.IsFaceRefused(m_Complex, t, i))
       {
-        return true;
+        if (Note(RemoveFace(m_Complex, t, i)))
+        {
+          return true;
+        }
+        m_Memory.RefuseFace(m_Complex, t, i);
       }
     }
+    m_Memory.RefuseCell(m_Complex, t);
     return false;
   }
 
 private:
-  static std::uint64_t
-  Key(IdType a, IdType b)
-  {
-    return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
-  }
-
-  bool
-  IsRefused(IdType a, IdType b) const
-  {
-    const auto found = m_Refused.find(Key(a, b));
-    return found != m_Refused.end() && (m_Changed[a] <= found->second || m_Changed[b] <= found->second);
-  }
-
   std::size_t
   RingLength(IdType a, IdType b) const
   {
@@ -353,13 +368,6 @@ private:
       return false;
     }
     ++m_Report.done;
-    for (IdType t : result.created)
-    {
-      for (IdType p : m_Complex.Cell(t))
-      {
-        m_Changed[p] = m_Report.done;
-      }
-    }
     if (m_Observer)
     {
       m_Observer(result);
@@ -369,11 +377,9 @@ private:
 
   TetraComplex &         m_Complex;
   const FlipParameters & m_Parameters;
+  FlipMemory &           m_Memory;
   FlipReport &           m_Report;
   const FlipObserver &   m_Observer;
-  /** Flips done when a cell at the point last changed, and when an edge was last refused. */
-  std::vector<std::size_t>                       m_Changed;
-  std::unordered_map<std::uint64_t, std::size_t> m_Refused;
 };
 } // namespace
 
@@ -423,7 +429,8 @@ RemoveEdge(TetraComplex & complex, IdType a, IdType b)
     result.outcome = MeshOperation::Topology;
     return result;
   }
-  return RemoveEdgeAt(complex, a, b, *first);
+  Ring ring;
+  return RemoveEdgeAt(complex, a, b, *first, ring);
 }
 
 SurfaceFlip
@@ -454,7 +461,7 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough)
       plan.surface = surface;
       // Each side is walked once: from the first of its faces that is met.
       const bool walked = std::any_of(sides.begin(), sides.end(), [t](const Ring & side) {
-        return side.cells.front() == t || side.cells.back() == t;
+        return side.cells[0] == t || side.cells[side.cellCount - 1] == t;
       });
       if (!walked)
       {
@@ -476,14 +483,14 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough)
   {
     return plan;
   }
-  const IdType c = sides[0].points.front(), d = sides[0].points.back();
+  const IdType c = sides[0].points[0], d = sides[0].points[sides[0].pointCount - 1];
   plan.corners = { c, d };
   bool single = false;
   for (Ring & side : sides)
   {
-    if (side.cells.size() == 1)
+    if (side.cellCount == 1)
     {
-      const IdType t = side.cells.front();
+      const IdType t = side.cells[0];
       if (single || complex.FaceSurfaces(t)[complex.LocalIndex(t, a)] >= 0 ||
           complex.FaceSurfaces(t)[complex.LocalIndex(t, b)] >= 0)
       {
@@ -510,15 +517,15 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough)
   double       after = -1.0;
   for (Ring & side : sides)
   {
-    const int region = complex.Region(side.cells.front());
-    plan.removed.insert(plan.removed.end(), side.cells.begin(), side.cells.end());
-    if (side.cells.size() == 1)
+    const int region = complex.Region(side.cells[0]);
+    plan.removed.insert(plan.removed.end(), side.cells.begin(), side.cells.begin() + side.cellCount);
+    if (side.cellCount == 1)
     {
       continue;
     }
     if (Orient3D(p[a], p[side.points[0]], p[side.points[1]], p[b]) < 0)
     {
-      std::reverse(side.points.begin(), side.points.end());
+      side.TurnPoints();
     }
     const RingTriangulation triangulation(complex, side, a, b, limit);
     after = std::max(after, triangulation.Worst());
@@ -538,35 +545,91 @@ PlanSurfaceFlip(const TetraComplex & complex, IdType a, IdType b, double enough)
   return plan;
 }
 
-FlipReport
-ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const FlipObserver & observer)
+int
+FlipMemory::EdgeOf(const TetraComplex & complex, IdType t, IdType a, IdType b)
 {
-  FlipReport         report;
-  const double       limit = std::cos(parameters.targetAngle);
-  std::vector<char>  active(complex.Points().size(), 1), next(complex.Points().size(), 0);
-  const FlipObserver note = [&](const FlipResult & flip) {
-    for (IdType t : flip.created)
+  constexpr int edges[4][4] = { { -1, 0, 1, 2 }, { 0, -1, 3, 4 }, { 1, 3, -1, 5 }, { 2, 4, 5, -1 } };
+  return edges[complex.LocalIndex(t, a)][complex.LocalIndex(t, b)];
+}
+
+void
+FlipMemory::Reserve(const TetraComplex & complex)
+{
+  m_Cells.resize(complex.Size());
+}
+
+bool
+FlipMemory::IsEdgeRefused(const TetraComplex & complex, IdType t, int edge) const
+{
+  const std::uint32_t time = m_Cells[t].edges[edge];
+  const Id4 &         c = complex.Cell(t);
+  return time > 0 &&
+         !(complex.HasChanged(c[TetraEdges[edge][0]], time) && complex.HasChanged(c[TetraEdges[edge][1]], time));
+}
+
+bool
+FlipMemory::IsFaceRefused(const TetraComplex & complex, IdType t, int face) const
+{
+  const std::uint32_t time = m_Cells[t].faces[face];
+  const Id4 &         c = complex.Cell(t);
+  const auto &        f = TetraFaces[face];
+  return time > 0 &&
+         !(complex.HasChanged(c[f[0]], time) && complex.HasChanged(c[f[1]], time) && complex.HasChanged(c[f[2]], time));
+}
+
+bool
+FlipMemory::IsCellRefused(const TetraComplex & complex, IdType t) const
+{
+  const std::uint32_t time = m_Cells[t].cell;
+  const Id4 &         c = complex.Cell(t);
+  return time > 0 &&
+         std::none_of(c.begin(), c.end(), [&complex, time](IdType p) { return complex.HasChanged(p, time); });
+}
+
+void
+FlipMemory::RefuseEdge(const TetraComplex & complex, IdType t, IdType a, IdType b)
+{
+  m_Cells[t].edges[EdgeOf(complex, t, a, b)] = complex.Clock();
+}
+
+void
+FlipMemory::RefuseFace(const TetraComplex & complex, IdType t, int face)
+{
+  m_Cells[t].faces[face] = complex.Clock();
+  const IdType other = complex.Neighbors(t)[face];
+  for (int k = 0; k < 4 && other >= 0; ++k)
+  {
+    if (complex.Neighbors(other)[k] == t)
     {
-      for (IdType p : complex.Cell(t))
-      {
-        next[p] = 1;
-      }
+      m_Cells[other].faces[k] = complex.Clock();
     }
-    if (observer)
-    {
-      observer(flip);
-    }
-  };
-  CellImprover improver(complex, parameters, report, note);
+  }
+}
+
+void
+FlipMemory::RefuseCell(const TetraComplex & complex, IdType t)
+{
+  m_Cells[t].cell = complex.Clock();
+}
+
+FlipReport
+ImproveByFlips(TetraComplex &         complex,
+               const FlipParameters & parameters,
+               const FlipObserver &   observer,
+               FlipMemory *           memory)
+{
+  FlipReport   report;
+  FlipMemory   own;
+  FlipMemory & known = memory ? *memory : own;
+  CellImprover improver(complex, parameters, known, report, observer);
+  const double limit = std::cos(parameters.targetAngle);
   for (int pass = 0; pass < parameters.maximumPasses; ++pass)
   {
+    known.Reserve(complex);
     std::vector<std::pair<double, IdType>> worst;
     for (IdType t = 0; t < complex.Size(); ++t)
     {
-      // A cell where nothing has changed since it was refused would be refused again.
-      const auto & cell = complex.Cell(t);
-      const bool   looked =
-        complex.IsAlive(t) && (active[cell[0]] || active[cell[1]] || active[cell[2]] || active[cell[3]]);
+      const bool   looked = complex.IsAlive(t) && !known.IsCellRefused(complex, t);
       const double cosine = looked ? CellCosine(complex, t) : -1.0;
       if (cosine > limit)
       {
@@ -579,6 +642,7 @@ ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const 
     {
       if (complex.IsAlive(candidate.second) && CellCosine(complex, candidate.second) > limit)
       {
+        known.Reserve(complex);
         improver.Run(candidate.second);
       }
     }
@@ -586,8 +650,6 @@ ImproveByFlips(TetraComplex & complex, const FlipParameters & parameters, const 
     {
       break;
     }
-    active.swap(next);
-    std::fill(next.begin(), next.end(), 0);
   }
   return report;
 }

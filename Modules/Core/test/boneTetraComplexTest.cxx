@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
+#include <set>
 
 using namespace bone;
 
@@ -215,6 +217,44 @@ TEST(TetraFlips, KeepMeshValidRegionsAndRaiseTheWorstAngle)
   }
 }
 
+TEST(TetraFlips, MemoryOmitsWhatWouldBeRefusedAgainAndNothingElse)
+{
+  for (unsigned seed = 1; seed <= 4; ++seed)
+  {
+    const auto   mesh = test::MakeBall(4, { 1, 1, 2 }, 12, 0.2, seed);
+    TetraComplex complex(mesh);
+    FlipMemory   memory;
+    const auto   tries = [](const FlipReport & report) {
+      return report.done + std::accumulate(std::begin(report.refused), std::end(report.refused), std::size_t(0));
+    };
+    FlipParameters flips;
+    flips.targetAngle = 0.6;
+    flips.maximumPasses = 100;
+    EXPECT_GT(ImproveByFlips(complex, flips, {}, &memory).done, 0u);
+    EXPECT_EQ(tries(ImproveByFlips(complex, flips, {}, &memory)), 0u) << "nothing has changed";
+
+    // Points that move change what flips can do around them, and there alone.
+    for (IdType p = 0; p < static_cast<IdType>(mesh.points.size()); p += 7)
+    {
+      const Vector3 x = complex.Points()[p];
+      const auto &  star = complex.Star(p);
+      complex.TryPoint(p, x + Vector3(0.6, -0.4, 0.5));
+      const bool valid =
+        complex.Dimension(p) == 3 && std::all_of(star.begin(), star.end(), [&](IdType t) {
+          const Id4 & c = complex.Cell(t);
+          return SignedVolume(
+                   complex.Points()[c[0]], complex.Points()[c[1]], complex.Points()[c[2]], complex.Points()[c[3]]) > 0;
+        });
+      complex.MovePoint(p, valid ? complex.Points()[p] : x);
+    }
+    TetraComplex other = complex;
+    const auto   known = ImproveByFlips(complex, flips, {}, &memory), fresh = ImproveByFlips(other, flips);
+    EXPECT_GT(known.done, 0u);
+    EXPECT_LT(tries(known), tries(fresh));
+    EXPECT_EQ(ImproveByFlips(complex, flips).done, 0u) << "seed " << seed << ": some flips were forgotten";
+  }
+}
+
 TEST(TetraFlips, SurfaceFlipsMayLowerAnglesThatStayLargeEnough)
 {
   const TetraComplex complex(test::MakeBall(3, { 1, 1, 2 }, 10, 0.1, 1));
@@ -284,6 +324,54 @@ TEST(TetraFlips, SurfaceFlipsKeepMeshValidAndNeverLowerTheWorstAngle)
   }
   EXPECT_GT(boundary, 0u);
   EXPECT_GT(interfaces, 0u);
+}
+
+TEST(TetraComplex, KnowsWhereCellsHaveChanged)
+{
+  TetraComplex complex(test::MakeBall(3, { 1, 1, 2 }, 10, 0.1, 1));
+  const auto   changed = [&complex](std::uint32_t time) {
+    std::set<IdType> points;
+    for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
+    {
+      if (complex.HasChanged(p, time))
+      {
+        points.insert(p);
+      }
+    }
+    return points;
+  };
+  const auto around = [&complex](const std::vector<IdType> & cells) {
+    std::set<IdType> points;
+    for (IdType t : cells)
+    {
+      points.insert(complex.Cell(t).begin(), complex.Cell(t).end());
+    }
+    return points;
+  };
+  EXPECT_TRUE(changed(0).empty());
+  IdType inner = 0;
+  while (complex.Dimension(inner) < 3)
+  {
+    ++inner;
+  }
+  auto time = complex.Clock();
+  complex.TryPoint(inner, complex.Points()[inner]);
+  EXPECT_TRUE(changed(time).empty());
+  complex.MovePoint(inner, complex.Points()[inner]);
+  EXPECT_EQ(changed(time), around(complex.Star(inner)));
+
+  time = complex.Clock();
+  const IdType next = complex.PointNeighbors(inner).front();
+  auto         expected = around(complex.EdgeStar(inner, next));
+  const IdType middle = complex.SplitEdge(inner, next, 0.5 * (complex.Points()[inner] + complex.Points()[next]));
+  expected.insert(middle);
+  EXPECT_EQ(changed(time), expected);
+
+  time = complex.Clock();
+  expected = around(complex.Star(middle));
+  ASSERT_EQ(complex.CanCollapse(middle, inner), MeshOperation::Done);
+  complex.Collapse(middle, inner);
+  EXPECT_EQ(changed(time), expected);
 }
 
 TEST(TetraComplex, SplitEdgesKeepVolumeAndTopologyAndCanBeCollapsed)

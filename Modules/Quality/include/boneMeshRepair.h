@@ -22,10 +22,18 @@ public:
   /** \param distanceBound  mm, of points that a curve loses; surfaces have the mover's. */
   MeshRepair(TetraComplex & complex, PointMover & mover, double distanceBound);
 
-  /** Goes once over all cells whose smallest dihedral angle has a cosine above `limit`, the worst first. `changed` is
-   * called with the cells that came or changed. Returns the number of operations. */
+  /** Goes once over all cells whose smallest dihedral angle has a cosine above `limit`, the worst first, but for those
+   * that an earlier call could do nothing for and at whose points nothing has changed since. `changed` is called with
+   * the cells that came or changed. Returns the number of operations. */
   std::size_t
   Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed);
+
+  /** Cells that nothing could be done for are tried again: to be called where the mover's bound has changed. */
+  void
+  Forget()
+  {
+    m_Refused.clear();
+  }
 
   /** Collapses edges shorter than `length` (mm) whatever cells that leaves, as long as they are positive, the shortest
    * first, until no more can be: knots of nearly coincident points, where no single collapse raises the smallest angle.
@@ -43,6 +51,8 @@ public:
 
 private:
   bool
+  IsRefused(IdType t) const;
+  bool
   FlipSurface(IdType t, std::vector<IdType> & changed);
   bool
   CollapseAt(IdType t, std::vector<IdType> & changed);
@@ -54,6 +64,8 @@ private:
   TetraComplex & m_Complex;
   PointMover &   m_Mover;
   double         m_SquaredBound;
+  /** By slots of cells: the complex' clock when nothing could be done, 0 for never. */
+  std::vector<std::uint32_t> m_Refused;
 };
 } // namespace bone
 

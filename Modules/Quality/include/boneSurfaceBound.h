@@ -7,6 +7,8 @@
 #include "boneSurfaceGrid.h"
 #include "boneSurfaceTarget.h"
 
+#include <algorithm>
+
 namespace bone
 {
 /** A triangle of a surface of the mesh. */
@@ -34,6 +36,7 @@ public:
   SetBound(double bound)
   {
     m_SquaredBound = bound * bound;
+    m_SquaredLeast = std::min(m_SquaredLeast, m_SquaredBound);
   }
 
   /** Whether triangles may go and others come; where they may, this counts them as replaced. `points` are the places
@@ -60,6 +63,8 @@ private:
 
   void
   AddSample(const Vector3 & place, const TriangleIds & owner, int surface);
+  static double
+  SquaredDistance(const Sample & sample, const TriangleIds & t, const std::vector<Vector3> & points);
   /** Distance from the first surface that the triangles may have, squared: the bound, or what the samples have. */
   bool
   FindOwners(const std::vector<SurfaceTriangle> & removed,
@@ -68,6 +73,7 @@ private:
 
   const SurfaceTarget &         m_First;
   double                        m_SquaredBound;
+  double                        m_SquaredLeast; ///< of the least bound so far: within it triangles are not compared
   std::vector<Sample>           m_Samples;
   std::vector<std::vector<int>> m_At; ///< #p, samples whose owner has p as its smallest id
   std::vector<Visit>            m_Visits;

@@ -82,6 +82,14 @@ private:
     }
   }
 
+  /** mm, of surfaces from what they were. */
+  void
+  SetBound(double bound)
+  {
+    m_Bound.SetBound(bound);
+    m_Repair.Forget();
+  }
+
   void
   Smooth(int iterations, SurfaceMotion motion)
   {
@@ -120,8 +128,8 @@ private:
   {
     FlipParameters flips;
     flips.targetAngle = angle;
-    m_Report.flips +=
-      ImproveByFlips(m_Complex, flips, [this](const FlipResult & flip) { m_Optimizer.Mark(flip.created); }).done;
+    const auto mark = [this](const FlipResult & flip) { m_Optimizer.Mark(flip.created); };
+    m_Report.flips += ImproveByFlips(m_Complex, flips, mark, &m_FlipMemory).done;
   }
 
   void
@@ -164,7 +172,7 @@ private:
   FitSurfacesAndInside()
   {
     // Between slices that the mesh has left out, contours may lie farther from it than its bound.
-    m_Bound.SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
+    SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
     double stiffness = m_Parameters.stiffness;
     int    passes = m_Parameters.fitPasses;
     for (int pass = 0; pass < passes; ++pass)
@@ -198,7 +206,7 @@ private:
     m_Optimizer.MarkAll();
     m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), noSurfaces);
     Flip(m_Parameters.lastAngle);
-    m_Bound.SetBound(m_Parameters.distanceBound);
+    SetBound(m_Parameters.distanceBound);
   }
 
   /** Whether the boundary turns by more than is wanted, and contours tell how smooth it may be. */
@@ -232,7 +240,7 @@ private:
   {
     MendBelow(m_Parameters.surfaceAngle, std::min(SurfaceFactor, m_Parameters.sliverFactor));
     MendBelow(m_Parameters.sliverAngle, m_Parameters.sliverFactor);
-    m_Bound.SetBound(m_Parameters.distanceBound);
+    SetBound(m_Parameters.distanceBound);
   }
 
   /** \param factor  distance bounds that surfaces may go. */
@@ -240,7 +248,7 @@ private:
   MendBelow(double angle, double factor)
   {
     const double limit = std::cos(angle);
-    m_Bound.SetBound(factor * m_Parameters.distanceBound);
+    SetBound(factor * m_Parameters.distanceBound);
     m_Optimizer.MarkAll();
     for (int pass = 0; pass < SliverPasses; ++pass)
     {
@@ -266,6 +274,7 @@ private:
   VolumeKeeper                  m_Volumes;
   PointOptimizer                m_Optimizer;
   MeshRepair                    m_Repair;
+  FlipMemory                    m_FlipMemory;
   ImprovementReport             m_Report;
 };
 } // namespace

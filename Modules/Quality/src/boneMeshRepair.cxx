@@ -40,7 +40,7 @@ MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType>
   for (const auto & candidate : worst)
   {
     const IdType t = candidate.second;
-    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit))
+    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit) || IsRefused(t))
     {
       continue;
     }
@@ -49,9 +49,20 @@ MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType>
     {
       ++count;
       changed(cells);
+      continue;
     }
+    m_Refused.resize(m_Complex.Size(), 0);
+    m_Refused[t] = m_Complex.Clock();
   }
   return count;
+}
+
+bool
+MeshRepair::IsRefused(IdType t) const
+{
+  const std::uint32_t time = t < static_cast<IdType>(m_Refused.size()) ? m_Refused[t] : 0;
+  const Id4 &         c = m_Complex.Cell(t);
+  return time > 0 && std::none_of(c.begin(), c.end(), [&](IdType p) { return m_Complex.HasChanged(p, time); });
 }
 
 bool

@@ -162,7 +162,7 @@ PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
   const auto &  points = m_Complex.Points();
   const Vector3 before = points[p];
   const double  worst = cosineFloor < 1.0 ? WorstCosine(p) : 1.0;
-  m_Complex.MovePoint(p, x);
+  m_Complex.TryPoint(p, x);
   MeshOperation outcome = MeshOperation::Done;
   if (!StarIsPositive(p))
   {
@@ -187,16 +187,20 @@ PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
     {
       for (const TriangleIds & t : m_Boundary)
       {
-        m_Complex.MovePoint(p, before);
+        m_Complex.TryPoint(p, before);
         m_Grid.Erase(t, points);
-        m_Complex.MovePoint(p, x);
+        m_Complex.TryPoint(p, x);
         m_Grid.Insert(t, points);
       }
     }
   }
-  if (outcome != MeshOperation::Done)
+  if (outcome == MeshOperation::Done)
   {
-    m_Complex.MovePoint(p, before);
+    m_Complex.MovePoint(p, x);
+  }
+  else
+  {
+    m_Complex.TryPoint(p, before);
   }
   return outcome;
 }

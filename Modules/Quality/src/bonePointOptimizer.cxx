@@ -135,14 +135,14 @@ PointOptimizer::WorstAt(IdType p, const Vector3 & x, double limit)
   const auto &  points = m_Complex.Points();
   const Vector3 before = points[p];
   double        worst = -1.0;
-  m_Complex.MovePoint(p, x);
+  m_Complex.TryPoint(p, x);
   for (auto t = m_Complex.Star(p).begin(); t != m_Complex.Star(p).end() && worst < limit; ++t)
   {
     const Id4 & c = m_Complex.Cell(*t);
     const bool  positive = SignedVolume(points[c[0]], points[c[1]], points[c[2]], points[c[3]]) > 0;
     worst = positive ? std::max(worst, CellCosine(m_Complex, *t)) : 2.0;
   }
-  m_Complex.MovePoint(p, before);
+  m_Complex.TryPoint(p, before);
   return worst;
 }
 } // namespace bone

@@ -6,8 +6,6 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <tuple>
 
 namespace bone
@@ -43,7 +41,14 @@ using Hinge = std::array<IdType, 4>;
 std::vector<std::pair<int, Hinge>>
 HingesOf(const TetraComplex & complex)
 {
-  std::map<std::tuple<int, IdType, IdType>, std::vector<IdType>> corners;
+  struct Side
+  {
+    int    surface;
+    IdType a;
+    IdType b;
+    IdType corner;
+  };
+  std::vector<Side> sides;
   for (IdType t = 0; t < complex.Size(); ++t)
   {
     for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
@@ -53,16 +58,22 @@ HingesOf(const TetraComplex & complex)
       {
         const Id4 &  cell = complex.Cell(t);
         const IdType a = cell[TetraFaces[i][k]], b = cell[TetraFaces[i][(k + 1) % 3]];
-        corners[{ surface, std::min(a, b), std::max(a, b) }].push_back(cell[TetraFaces[i][(k + 2) % 3]]);
+        sides.push_back({ surface, std::min(a, b), std::max(a, b), cell[TetraFaces[i][(k + 2) % 3]] });
       }
     }
   }
+  const auto edge = [](const Side & side) { return std::tie(side.surface, side.a, side.b); };
+  std::stable_sort(sides.begin(), sides.end(), [&edge](const Side & x, const Side & y) { return edge(x) < edge(y); });
   std::vector<std::pair<int, Hinge>> hinges;
-  for (const auto & [edge, opposite] : corners)
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end)
   {
-    if (opposite.size() == 2)
+    for (end = i + 1; end < sides.size() && edge(sides[end]) == edge(sides[i]);)
     {
-      hinges.push_back({ std::get<0>(edge), { std::get<1>(edge), std::get<2>(edge), opposite[0], opposite[1] } });
+      ++end;
+    }
+    if (end == i + 2)
+    {
+      hinges.push_back({ sides[i].surface, { sides[i].a, sides[i].b, sides[i].corner, sides[i + 1].corner } });
     }
   }
   return hinges;
@@ -74,7 +85,8 @@ class HingeSystem
 public:
   HingeSystem(const std::vector<Vector3> &                points,
               const std::vector<char> &                   isFree,
-              const std::vector<SurfaceBending::Spring> & springs)
+              const std::vector<SurfaceBending::Spring> & springs,
+              std::size_t                                 hinges)
     : m_Points(points)
     , m_Place(points.size(), -1)
   {
@@ -95,6 +107,7 @@ public:
       }
     }
     m_Right.setZero(static_cast<Eigen::Index>(m_Free.size()), 3);
+    m_Entries.reserve(m_Free.size() + 9 * springs.size() + 16 * hinges);
     for (IdType p : m_Free)
     {
       Add<1>({ p }, { 1.0 }, Hold * weights[p], points[p]);
@@ -198,20 +211,20 @@ SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
   {
     m_Hinges.push_back(hinge);
   }
-  const auto &     x = complex.Points();
-  std::set<IdType> ends;
-  double           turns = 0.0, area = 0.0;
+  const auto &      x = complex.Points();
+  std::vector<char> isEnd(x.size(), 0);
+  double            turns = 0.0, area = 0.0;
   for (const Hinge & h : m_Hinges)
   {
     turns += TurnAt(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
     const Vector3 edge = x[h[1]] - x[h[0]];
     area += (edge.cross(x[h[2]] - x[h[0]]).norm() + edge.cross(x[h[3]] - x[h[0]]).norm()) / 6.0; // a triangle has three
-    ends.insert({ h[0], h[1] });
+    isEnd[h[0]] = isEnd[h[1]] = 1;
   }
   if (turns > 0)
   {
     m_SoftTurn = SoftShare * turns / static_cast<double>(m_Hinges.size());
-    m_Factor = stiffness * std::pow(area / static_cast<double>(ends.size()), 2);
+    m_Factor = stiffness * std::pow(area / static_cast<double>(std::count(isEnd.begin(), isEnd.end(), 1)), 2);
   }
 }
 
@@ -233,7 +246,7 @@ SurfaceBending::Solve(const std::vector<Vector3> & points,
                       const std::vector<char> &    isFree,
                       const std::vector<Spring> &  springs) const
 {
-  HingeSystem system(points, isFree, springs);
+  HingeSystem system(points, isFree, springs, m_Hinges.size());
   for (const Hinge & h : m_Hinges)
   {
     const Vector3 &a = points[h[0]], &b = points[h[1]], &c = points[h[2]], &d = points[h[3]];

@@ -8,9 +8,15 @@
 
 namespace bone
 {
+namespace
+{
+constexpr double Far = std::numeric_limits<double>::max();
+} // namespace
+
 SurfaceBound::SurfaceBound(const TetraComplex & complex, const SurfaceTarget & first, double bound)
   : m_First(first)
   , m_SquaredBound(bound * bound)
+  , m_SquaredLeast(bound * bound)
   , m_At(complex.Points().size())
 {
   const auto &      points = complex.Points();
@@ -49,6 +55,12 @@ SurfaceBound::AddSample(const Vector3 & place, const TriangleIds & owner, int su
   m_Samples.push_back({ place, owner, 0.0, surface });
 }
 
+double
+SurfaceBound::SquaredDistance(const Sample & sample, const TriangleIds & t, const std::vector<Vector3> & points)
+{
+  return (ClosestPointOnTriangle(sample.place, points[t[0]], points[t[1]], points[t[2]]) - sample.place).squaredNorm();
+}
+
 bool
 SurfaceBound::FindOwners(const std::vector<SurfaceTriangle> & removed,
                          const std::vector<SurfaceTriangle> & added,
@@ -56,9 +68,10 @@ SurfaceBound::FindOwners(const std::vector<SurfaceTriangle> & removed,
 {
   m_Visits.clear();
   m_Farthest = m_SquaredBound;
-  for (const SurfaceTriangle & old : removed)
+  const bool moved = &removed == &added;
+  for (std::size_t r = 0; r < removed.size(); ++r)
   {
-    const TriangleIds key = Ascending(old.ids);
+    const TriangleIds key = Ascending(removed[r].ids);
     for (int s : m_At[key[0]])
     {
       const Sample & sample = m_Samples[s];
@@ -66,15 +79,19 @@ SurfaceBound::FindOwners(const std::vector<SurfaceTriangle> & removed,
       {
         continue;
       }
-      Visit        visit{ s, -1, std::numeric_limits<double>::max() };
+      // Most samples stay close to their triangle where it moves: the others are not looked at then.
+      Visit visit{ s, static_cast<int>(r), moved ? SquaredDistance(sample, removed[r].ids, points) : Far };
+      if (visit.squaredDistance <= m_SquaredLeast)
+      {
+        m_Visits.push_back(visit);
+        continue;
+      }
       const double allowed = std::max(m_SquaredBound, sample.squaredDistance);
       for (std::size_t k = 0; k < added.size(); ++k)
       {
-        const TriangleIds & ids = added[k].ids;
         if (added[k].surface == sample.surface)
         {
-          const Vector3 nearest = ClosestPointOnTriangle(sample.place, points[ids[0]], points[ids[1]], points[ids[2]]);
-          const double  squared = (nearest - sample.place).squaredNorm();
+          const double squared = SquaredDistance(sample, added[k].ids, points);
           if (squared < visit.squaredDistance)
           {
             visit.squaredDistance = squared;
