@@ -26,12 +26,12 @@ struct ImprovementParameters
   double sliverAngle{ 0.0873 };   ///< cells below are mended though surfaces go farther than their bound
   double sliverFactor{ 4.0 };     ///< distance bounds that surfaces may go there
   int    fitPasses{ 4 };          ///< of fitting surfaces, changing their edges and smoothing inside, at the end
-  int    morePasses{ 6 };         ///< at most, each stiffer, until the boundary turns by turnShare of what it did
-  double turnShare{ 0.49 };       ///< across slices, where contours are given
+  int    morePasses{ 6 };         ///< at most, until the boundary turns by turnShare of what it did; fits grow stiffer
+  double turnShare{ 0.494 };      ///< across slices, where contours are given
   double sharpAngle{ 0.7 };       ///< edges that turn by more are collapsed where contours do not ask for them
   double volumeSlack{ 0.0025 };   ///< of the smaller region beside a surface: its volume may follow contours so far
   double flipGain{ 0.1 };         ///< distance bounds, squared, that flips must bring the contours closer on average
-  double stiffness{ 0.08 };       ///< of surfaces in that fit, see SurfaceBending
+  double stiffness{ 0.08 };       ///< of surfaces in the first fit, see SurfaceBending
 
   const ContourShape * shape{ nullptr };   ///< what surfaces are fitted to; none: the first surfaces
   const LabelOutline * outline{ nullptr }; ///< of the bone in an image, if known: the boundary is fitted to it too
@@ -53,16 +53,16 @@ struct ImprovementReport
 /** \brief Makes a valid layered mesh good to compute with.
  *
  * 1. Surface points go to their faired place (\ref SurfaceTarget), inner points to the mean of their neighbours.
- * 2. In each round: inner points are smoothed, edges inside regions are halved and collapsed to the size that the
- *    surfaces ask for (\ref InteriorRefinement; not in the last round), the regions get their volumes back (\ref
+ * 2. In each round: inner points are smoothed, edges inside regions are halved and collapsed, twice, to the size that
+ *    the surfaces ask for (\ref InteriorRefinement; not in the last round), the regions get their volumes back (\ref
  *    VolumeKeeper), then flips, repair (\ref MeshRepair) and optimisation (\ref PointOptimizer) of the worst cells.
  *    Last, cells below surfaceAngle are looked after once more with a wider bound of surfaces (\ref SurfaceBound).
  * 3. In turn: boundary and interfaces are fitted to the contours that the mesh was made of, if they are given, else to
  *    the first surfaces (\ref FitSurfaces); sharp edges that contours do not ask for are collapsed (\ref
  *    CollapseSharpEdges), surface edges flipped where contours lie closer to the other two triangles or these turn less
  *    (\ref FlipToContours); inner points are smoothed, edges there flipped. Where the boundary still turns by more than
- *    turnShare, more of these follow. Last the regions get their volumes back once more, the worst cells' inner points
- *    are optimised, and edges there flipped.
+ *    turnShare, surfaces get stiffer, and more of these follow. Last the regions get their volumes back once more,
+ *    the worst cells' inner points are optimised, and edges there flipped.
  *
  * Sequential; the result depends on the input alone. */
 ImprovementReport

@@ -17,19 +17,30 @@ namespace bone
 {
 namespace
 {
-/** Edges longer than this many sizes are halved, those shorter than the other collapsed. */
+/** Edges longer than this many sizes are halved, those shorter than ShortEdge collapsed. */
 constexpr double LongEdge = 1.5;
 constexpr double ShortEdge = 0.6;
+/** Where edges are halved next, collapses may leave longer ones. */
+constexpr double LongestHalved = 2.0 * LongEdge;
 /** Of the distance bound: shorter edges are accidents of the input. */
 constexpr double TinyEdge = 1e-3;
 constexpr int    SmoothingsInRound = 2;
 constexpr int    SliverPasses = 2;
 /** Fits of surfaces between two of flips inside. */
 constexpr int FitsToFlip = 2;
-/** From one additional fit to the next. */
-constexpr double StiffnessFactor = 1.3;
+/** Fits from this many before the last may be stiffer than the first. */
+constexpr int FirstStiffer = 2;
+/** Stiffness rises from one fit to the next by this power of what the boundary turns by over what is wanted ... */
+constexpr double StiffnessPower = 4.0;
+/** ... but by no less than this share, twice that, and so on, and by no more than this factor ... */
+constexpr double LeastStiffening = 0.1;
+constexpr double MostStiffening = 3.0;
+/** ... up to so many times the first: beyond, bodies that are smooth from the start are made flat. */
+constexpr double MostStiffness = 4.0;
 /** Smallest angle, rad, that points may leave where they are put on the right side of voxels. */
 constexpr double SideAngle = 0.13;
+/** Distance bounds that a curve may lose: the rim of a cut is not fitted to contours later. */
+constexpr double CurveBound = 0.2;
 /** Distance bounds that surfaces may go to mend cells below surfaceAngle. */
 constexpr double SurfaceFactor = 1.5;
 
@@ -47,7 +58,7 @@ public:
     , m_Target(complex, parameters.distanceBound, parameters.fairingIterations)
     , m_Volumes(complex)
     , m_Optimizer(complex, m_Mover, m_Target)
-    , m_Repair(complex, m_Mover, parameters.distanceBound)
+    , m_Repair(complex, m_Mover, CurveBound * parameters.distanceBound)
   {}
 
   ImprovementReport
@@ -139,6 +150,8 @@ private:
     Flip(m_Parameters.surfaceAngle);
     InteriorRefinement refinement(m_Complex, m_Repair, m_Parameters.gradation);
     m_Report.splits += refinement.Split(LongEdge);
+    // What fans leave close together goes before it is halved once more.
+    m_Report.collapses += refinement.Collapse(ShortEdge, LongestHalved, std::cos(m_Parameters.repairAngle));
     m_Report.splits += refinement.Split(LongEdge);
     Flip(m_Parameters.surfaceAngle);
     m_Report.collapses += refinement.Collapse(ShortEdge, LongEdge, std::cos(m_Parameters.repairAngle));
@@ -173,31 +186,28 @@ private:
   {
     // Between slices that the mesh has left out, contours may lie farther from it than its bound.
     SetBound(m_Parameters.sliverFactor * m_Parameters.distanceBound);
-    double stiffness = m_Parameters.stiffness;
-    int    passes = m_Parameters.fitPasses;
+    const int most = m_Parameters.fitPasses + m_Parameters.morePasses;
+    int       passes = m_Parameters.fitPasses;
+    double    stiffness = m_Parameters.stiffness;
     for (int pass = 0; pass < passes; ++pass)
     {
-      SurfaceFitParameters fit;
-      fit.stiffness = stiffness;
-      fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-      FitSurfaces(m_Complex, m_Mover, { m_First, m_Parameters.shape, m_Parameters.outline }, fit);
-      if (m_Parameters.shape)
-      {
-        ChangeEdges(stiffness);
-      }
-      Smooth(SmoothingsInRound, SurfaceMotion::None);
-      if (pass % FitsToFlip == 0 || pass + 1 == passes)
+      FitOnce(stiffness);
+      const bool isLast = pass + 1 == passes;
+      if (isLast || pass % FitsToFlip == 0)
       {
         Flip(m_Parameters.targetAngle);
       }
-      if (pass + 1 == passes)
+      double excess = Excess();
+      if (isLast && (passes == most || !(excess > 1.0)))
       {
         RestoreSides();
+        excess = Excess();
       }
-      if (pass + 1 == passes && passes < m_Parameters.fitPasses + m_Parameters.morePasses && IsRough())
+      const int stiffer = pass + FirstStiffer - m_Parameters.fitPasses + 1;
+      if (excess > 1.0 && stiffer > 0)
       {
-        stiffness *= StiffnessFactor;
-        ++passes;
+        stiffness = Stiffen(stiffness, excess, 1.0 + LeastStiffening * stiffer);
+        passes += isLast && passes < most ? 1 : 0;
       }
     }
     RestoreVolumes(m_Parameters.surfaceAngle, m_Parameters.shape ? m_Parameters.volumeSlack : 0.0);
@@ -209,12 +219,34 @@ private:
     SetBound(m_Parameters.distanceBound);
   }
 
-  /** Whether the boundary turns by more than is wanted, and contours tell how smooth it may be. */
-  bool
-  IsRough() const
+  void
+  FitOnce(double stiffness)
   {
-    return m_Parameters.shape && m_Parameters.stiffness > 0 &&
-           MeanBoundaryTurn(m_Complex, m_Parameters.slices) > m_Parameters.turnShare * m_FirstTurn;
+    SurfaceFitParameters fit;
+    fit.stiffness = stiffness;
+    fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
+    FitSurfaces(m_Complex, m_Mover, { m_First, m_Parameters.shape, m_Parameters.outline }, fit);
+    if (m_Parameters.shape)
+    {
+      ChangeEdges(stiffness);
+    }
+    Smooth(SmoothingsInRound, SurfaceMotion::None);
+  }
+
+  /** Stiffness of the next fit. \param least  factor. */
+  double
+  Stiffen(double stiffness, double excess, double least) const
+  {
+    const double factor = std::min(std::max(std::pow(excess, StiffnessPower), least), MostStiffening);
+    return std::min(stiffness * factor, MostStiffness * m_Parameters.stiffness);
+  }
+
+  /** What the boundary turns by over what is wanted; 0 where contours do not tell how smooth it may be. */
+  double
+  Excess() const
+  {
+    const bool known = m_Parameters.shape && m_Parameters.stiffness > 0 && m_FirstTurn > 0;
+    return known ? MeanBoundaryTurn(m_Complex, m_Parameters.slices) / (m_Parameters.turnShare * m_FirstTurn) : 0.0;
   }
 
   /** Collapses and flips of surface edges by contours and turns. */

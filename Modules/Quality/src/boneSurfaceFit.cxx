@@ -20,8 +20,10 @@ namespace
 constexpr double ShortestMove = 2e-3;
 /** Weight of what lies between slices, where contours are known, next to the contours themselves. */
 constexpr double WeightBetweenSlices = 0.1;
-/** Weight of a label's outline next to the contours. */
+/** Weight of a label's outline next to the contours, where its faces look along the slices' normal; and what is left of
+ * it where they look within slices, of which contours tell more. */
 constexpr double WeightOfOutline = 0.2;
+constexpr double WeightWithinSlices = 0.25;
 
 using Barycentric = std::array<double, 3>;
 
@@ -146,12 +148,12 @@ AddContours(const TetraComplex & complex, const ContourSamples & contours, Sprin
 }
 
 /** Springs from triangles of the boundary to the faces of a label's outline that look the same way.
- * \param normal  of the slices of contours, of which the faces are to tell what lies between them; null: there are
+ * \param normal  of the slices of contours: most is asked of the faces about what lies between them; null: there are
  * none. */
 void
 AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vector3 * normal, Springs & springs)
 {
-  constexpr double                    farthest = 1.5, leastSlope = 0.3, leastWeight = 0.1;
+  constexpr double                    farthest = 1.5, leastSlope = 0.3;
   const auto &                        x = complex.Points();
   const auto                          ids = BoundaryFaces(complex);
   std::vector<TriangleTree::Triangle> triangles;
@@ -163,12 +165,8 @@ AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vec
   std::vector<std::optional<SurfaceBending::Spring>> found(outline.faces.size());
   ParallelFor(found.size(), [&](std::size_t k) {
     const LabelOutline::Face & face = outline.faces[k];
-    const double               weight = normal ? std::pow(normal->dot(face.outward), 2) : 1.0;
-    if (weight < leastWeight)
-    {
-      return;
-    }
-    const auto nearest = tree.FindNearest(face.centre);
+    const double               along = normal ? normal->dot(face.outward) : 1.0;
+    const auto                 nearest = tree.FindNearest(face.centre);
     if (nearest.triangle < 0 || nearest.squaredDistance > farthest * farthest)
     {
       return;
@@ -177,6 +175,7 @@ AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vec
     const double        slope = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).normalized().dot(face.outward);
     if (slope > leastSlope)
     {
+      const double weight = WeightWithinSlices + (1.0 - WeightWithinSlices) * along * along;
       const double total = WeightOfOutline * weight * slope * face.area;
       found[k] = SurfaceBending::Spring{ f, SharesAt(x, f, nearest.point), total, face.centre };
     }

@@ -322,6 +322,46 @@ TEST(MeshQualityFilter, SurfacesAreFittedToLabelsBetweenSlices)
   EXPECT_GT(heights[2], heights[1] + 0.1);
 }
 
+TEST(MeshQualityFilter, WithinSlicesContoursCountMoreThanLabels)
+{
+  // A ball and contours of it; voxels of one beside it draw its sides there, but by less than they draw its top.
+  constexpr double shift = 0.8, radius = 12.0;
+  const auto       mesh = test::MakeBall(4, { 1, 1, 2 }, radius, 0.1, 2);
+  auto             stack = ContourStack::New();
+  stack->SetSlices(CirclesOfBall(Vector3::Zero(), radius));
+  const auto middle = [](const MeshArrays & arrays) {
+    Vector3 sum = Vector3::Zero();
+    double  area = 0.0;
+    for (const auto & t : Boundary(arrays))
+    {
+      const double weight = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+      sum += weight * (t[0] + t[1] + t[2]) / 3.0;
+      area += weight;
+    }
+    return Vector3(sum / area);
+  };
+  Vector3 moved[2];
+  for (const bool up : { false, true })
+  {
+    Vector3 middles[2];
+    for (const bool shifted : { false, true })
+    {
+      const Vector3 centre = !shifted ? Vector3::Zero() : up ? Vector3(0, 0, shift) : Vector3(shift, 0, 0);
+      auto          filter = MeshQualityFilter<MeshType>::New();
+      filter->SetInput(AsMesh(mesh));
+      filter->SetContours(stack);
+      filter->SetRounds(1);
+      filter->SetLabelImage(LabelOfBall(centre, radius, 1.0));
+      filter->SetLabel(4);
+      filter->Update();
+      middles[shifted] = middle(filter->GetOutput()->GetArrays());
+    }
+    moved[up] = middles[1] - middles[0];
+  }
+  EXPECT_GT(moved[0].x(), 0.106 * shift); // 0.093 of it by faces along the normal alone
+  EXPECT_GT(moved[1].z(), 1.4 * moved[0].x());
+}
+
 TEST(MeshQualityFilter, TheBoundaryIsPutOnItsSideOfVoxels)
 {
   // The boundary passes some centres by little: with the labels it has fewer of them on the wrong side.
