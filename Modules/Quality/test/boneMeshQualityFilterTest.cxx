@@ -232,6 +232,24 @@ TEST(MeshQualityFilter, SurfacesStayWithinTheBoundBothWays)
   EXPECT_LE(farthest(made, firstTree, true), 1.5 * bound);
 }
 
+namespace
+{
+/** Centroid of the boundary's area. */
+Vector3
+MiddleOfBoundary(const MeshArrays & arrays)
+{
+  Vector3 sum = Vector3::Zero();
+  double  area = 0.0;
+  for (const auto & t : Boundary(arrays))
+  {
+    const double weight = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    sum += weight * (t[0] + t[1] + t[2]) / 3.0;
+    area += weight;
+  }
+  return sum / area;
+}
+} // namespace
+
 TEST(MeshQualityFilter, SurfacesAreFittedToContours)
 {
   // A ball, and the contours of one beside it.
@@ -239,17 +257,6 @@ TEST(MeshQualityFilter, SurfacesAreFittedToContours)
   const auto       mesh = test::MakeBall(4, { 1, 1, 2 }, radius, 0.1, 2);
   auto             stack = ContourStack::New();
   stack->SetSlices(CirclesOfBall({ shift, 0, 0 }, radius));
-  const auto centre = [](const MeshArrays & arrays) {
-    Vector3 sum = Vector3::Zero();
-    double  area = 0.0;
-    for (const auto & t : Boundary(arrays))
-    {
-      const double weight = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-      sum += weight * (t[0] + t[1] + t[2]) / 3.0;
-      area += weight;
-    }
-    return Vector3(sum / area);
-  };
   for (const bool with : { false, true })
   {
     auto filter = MeshQualityFilter<MeshType>::New();
@@ -259,7 +266,7 @@ TEST(MeshQualityFilter, SurfacesAreFittedToContours)
     filter->Update();
     const auto made = filter->GetOutput()->GetArrays();
     EXPECT_TRUE(ValidateMesh(made).IsValid()) << ValidateMesh(made).Summary();
-    EXPECT_NEAR((centre(made) - centre(mesh)).x(), with ? shift : 0.0, 0.05);
+    EXPECT_NEAR((MiddleOfBoundary(made) - MiddleOfBoundary(mesh)).x(), with ? shift : 0.0, 0.05);
   }
 }
 
@@ -329,17 +336,6 @@ TEST(MeshQualityFilter, WithinSlicesContoursCountMoreThanLabels)
   const auto       mesh = test::MakeBall(4, { 1, 1, 2 }, radius, 0.1, 2);
   auto             stack = ContourStack::New();
   stack->SetSlices(CirclesOfBall(Vector3::Zero(), radius));
-  const auto middle = [](const MeshArrays & arrays) {
-    Vector3 sum = Vector3::Zero();
-    double  area = 0.0;
-    for (const auto & t : Boundary(arrays))
-    {
-      const double weight = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-      sum += weight * (t[0] + t[1] + t[2]) / 3.0;
-      area += weight;
-    }
-    return Vector3(sum / area);
-  };
   Vector3 moved[2];
   for (const bool up : { false, true })
   {
@@ -354,7 +350,7 @@ TEST(MeshQualityFilter, WithinSlicesContoursCountMoreThanLabels)
       filter->SetLabelImage(LabelOfBall(centre, radius, 1.0));
       filter->SetLabel(4);
       filter->Update();
-      middles[shifted] = middle(filter->GetOutput()->GetArrays());
+      middles[shifted] = MiddleOfBoundary(filter->GetOutput()->GetArrays());
     }
     moved[up] = middles[1] - middles[0];
   }
