@@ -31,8 +31,8 @@ namespace bone
  * closer or makes the surface turn less (\ref FlipToContours).
  *
  * Optional input "LabelImage", on any grid: the bone, as voxels. The boundary is fitted to the outline of `Label` too,
- * as far as contours do not know it, between slices; and where it passes the centre of a voxel on the wrong side by
- * less than a sixteenth of a voxel, it is put on the right one (\ref SideKeeper).
+ * most of all between slices, where contours do not know it; and where it passes the centre of a voxel on the wrong
+ * side by less than a sixteenth of a voxel, it is put on the right one (\ref SideKeeper).
  *
  * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
  * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */

@@ -22,9 +22,10 @@ struct SurfaceTriangle
  * \brief Keeps boundary and interfaces within a distance of the surfaces that they were at first, both ways.
  *
  * Four points within each first triangle and its corners are samples, and each belongs to a triangle of the mesh. Where
- * triangles are replaced or moved, their samples go to the nearest of those that come: none may be farther than the
- * bound, or than it was where that is more. The centroid of a new triangle must lie within the bound of the first
- * surface in the same sense. So neither a ridge is cut off nor a hollow filled by many small steps. */
+ * triangles are replaced, their samples go to the nearest of those that come; where they are moved too, but for samples
+ * that stay within the least bound so far of their own. None may be farther than the bound, or than it was where that
+ * is more. The centroid of a new triangle must lie within the bound of the first surface in the same sense. So neither
+ * a ridge is cut off nor a hollow filled by many small steps. */
 class SurfaceBound
 {
 public:
@@ -65,7 +66,8 @@ private:
   AddSample(const Vector3 & place, const TriangleIds & owner, int surface);
   static double
   SquaredDistance(const Sample & sample, const TriangleIds & t, const std::vector<Vector3> & points);
-  /** Distance from the first surface that the triangles may have, squared: the bound, or what the samples have. */
+  /** Whether all samples may go to triangles that come; finds these, and how far triangles may be from the first
+   * surface, squared: the bound, or what the samples have. */
   bool
   FindOwners(const std::vector<SurfaceTriangle> & removed,
              const std::vector<SurfaceTriangle> & added,

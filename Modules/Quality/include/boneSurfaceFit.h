@@ -31,7 +31,7 @@ struct SurfaceFitTarget
  * the target, and the surfaces resist bending (\ref SurfaceBending): the fixed point is a least-squares fit of the
  * triangles to the target by hinged plates. The target is the contours on their slices, where they are given, and with
  * a small weight their shape between slices; without them, and where they are not near by, the first surfaces. Where
- * the outline of a label is given, its faces draw the boundary: next to contours as far as they look along the slices'
+ * the outline of a label is given, its faces draw the boundary: next to contours most where they look along the slices'
  * normal, as that is what contours do not know. Points of curves, corners and flat cuts stay, and each move is one of
  * the mover. Returns the number of moves. */
 std::size_t

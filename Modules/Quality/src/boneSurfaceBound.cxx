@@ -68,10 +68,11 @@ SurfaceBound::FindOwners(const std::vector<SurfaceTriangle> & removed,
 {
   m_Visits.clear();
   m_Farthest = m_SquaredBound;
-  const bool moved = &removed == &added;
-  for (std::size_t r = 0; r < removed.size(); ++r)
+  const bool   moved = removed.empty();
+  const auto & goes = moved ? added : removed;
+  for (std::size_t r = 0; r < goes.size(); ++r)
   {
-    const TriangleIds key = Ascending(removed[r].ids);
+    const TriangleIds key = Ascending(goes[r].ids);
     for (int s : m_At[key[0]])
     {
       const Sample & sample = m_Samples[s];
@@ -80,7 +81,7 @@ SurfaceBound::FindOwners(const std::vector<SurfaceTriangle> & removed,
         continue;
       }
       // Most samples stay close to their triangle where it moves: the others are not looked at then.
-      Visit visit{ s, static_cast<int>(r), moved ? SquaredDistance(sample, removed[r].ids, points) : Far };
+      Visit visit{ s, static_cast<int>(r), moved ? SquaredDistance(sample, goes[r].ids, points) : Far };
       if (visit.squaredDistance <= m_SquaredLeast)
       {
         m_Visits.push_back(visit);
@@ -115,7 +116,7 @@ SurfaceBound::Replace(const std::vector<SurfaceTriangle> & removed,
                       const std::vector<SurfaceTriangle> & added,
                       const std::vector<Vector3> &         points)
 {
-  if (!FindOwners(removed.empty() ? added : removed, added, points))
+  if (!FindOwners(removed, added, points))
   {
     return false;
   }

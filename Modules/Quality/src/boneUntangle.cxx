@@ -77,7 +77,7 @@ public:
         {
           Vector3 x = centre;
           x[d / 2] += d % 2 == 0 ? step : -step;
-          m_Complex.MovePoint(p, m_Target.Project(m_Complex, p, x));
+          m_Complex.TryPoint(p, m_Target.Project(m_Complex, p, x));
           const double volume = LeastVolume(p);
           if (volume > best + gain * gain * scale)
           {

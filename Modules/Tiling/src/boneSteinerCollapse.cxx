@@ -169,12 +169,14 @@ public:
         double       share = 1.0;
         for (int attempt = 0; attempt < MoveAttempts; ++attempt, share *= 0.5)
         {
-          m_Complex.MovePoint(v, from + share * (Ideal(v) - from));
+          const Vector3 x = from + share * (Ideal(v) - from);
+          m_Complex.TryPoint(v, x);
           if (IsPositive(v) && WorstShape(v) >= worst)
           {
+            m_Complex.MovePoint(v, x);
             break;
           }
-          m_Complex.MovePoint(v, from);
+          m_Complex.TryPoint(v, from);
         }
         m_Dirty[v] = 1;
       }
