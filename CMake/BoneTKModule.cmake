@@ -1,10 +1,17 @@
-# bonetk_module(<Name> [DEPENDS <Module>...] [PUBLIC <lib>...] [PRIVATE <lib>...])
+# bonetk_module(<Name> [NO_PRECOMPILE] [DEPENDS <Module>...] [PUBLIC <lib>...] [PRIVATE <lib>...])
 #
-# Defines the library BoneTK::<Name> from src/*.cxx and include/*.h (header-only where src is empty) and, with
+# Defines the library BoneTK::<Name> from src/ and include/ (header-only where src holds no source) and, with
 # BUILD_TESTING, the test program bone<Name>Tests from test/*Test.cxx; test/*Benchmark.cxx become bone<Name>Benchmarks.
-# A dependency that is misspelt, missing or defined later stops the configuration: modules cannot depend on each other
-# in a circle. A stage depends on Core alone (IO and Phantom are no stages); the check below keeps it so.
+# A dependency that is misspelt, missing, defined later, or against the order of the rooms stops the configuration:
+#
+#   foundation <- stages <- compositions <- Apps, Examples, Wrapping
+#
+# The foundation depends on itself alone, and within it only the modules named below may be used by a stage; a
+# composition uses foundation, stages and compositions that stand before it.
+set(BONETK_FOUNDATION Core IO Phantom)
 set(BONETK_STAGES Contour Tiling Quality Density Simplification Radiograph Atlas)
+set(BONETK_COMPOSITIONS Model Evaluation)
+set(BONETK_STAGES_MAY_USE Core)
 set_property(GLOBAL PROPERTY BONETK_MODULES "")
 
 function(bonetk_compile_settings target)
@@ -15,27 +22,48 @@ function(bonetk_compile_settings target)
   endif()
 endfunction()
 
+# Refuses a dependency against the order of the rooms.
+function(bonetk_check_dependency name dependency)
+  if(NOT TARGET bone${dependency})
+    message(FATAL_ERROR "Module ${name} depends on ${dependency}, which is no module standing before it.")
+  endif()
+  if(name IN_LIST BONETK_FOUNDATION)
+    set(allowed ${BONETK_FOUNDATION})
+  elseif(name IN_LIST BONETK_STAGES)
+    set(allowed ${BONETK_STAGES_MAY_USE})
+  elseif(name IN_LIST BONETK_COMPOSITIONS)
+    set(allowed ${BONETK_FOUNDATION} ${BONETK_STAGES} ${BONETK_COMPOSITIONS})
+  else()
+    message(FATAL_ERROR "Module ${name} is in no room: name it in CMake/BoneTKModule.cmake.")
+  endif()
+  if(NOT dependency IN_LIST allowed)
+    message(FATAL_ERROR "Module ${name} may not depend on ${dependency}; it may use: ${allowed}.")
+  endif()
+endfunction()
+
 function(bonetk_module name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "NO_PRECOMPILE" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "bonetk_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
   foreach(dependency IN LISTS arg_DEPENDS)
-    if(NOT TARGET bone${dependency})
-      message(FATAL_ERROR "Module ${name} depends on ${dependency}, which is no module standing before it.")
-    endif()
-    if(name IN_LIST BONETK_STAGES AND NOT dependency STREQUAL "Core")
-      message(FATAL_ERROR "Module ${name} is a stage and may depend on Core only, not on ${dependency}.")
-    endif()
+    bonetk_check_dependency(${name} ${dependency})
   endforeach()
 
-  file(GLOB sources CONFIGURE_DEPENDS src/*.cxx)
+  # Folders in src name a concern each; their headers are found from all of them.
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS src/*.cxx)
+  file(GLOB concerns LIST_DIRECTORIES true CONFIGURE_DEPENDS src/*)
+  list(FILTER concerns EXCLUDE REGEX "\\.[a-z]+$")
   file(GLOB headers CONFIGURE_DEPENDS include/*.h include/*.hxx)
   set(target bone${name})
   if(sources)
     add_library(${target} STATIC ${sources} ${headers})
     set(scope PUBLIC)
     bonetk_compile_settings(${target})
+    target_include_directories(${target} PRIVATE ${concerns})
+    if(NOT arg_NO_PRECOMPILE)
+      bonetk_precompile(${target})
+    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -58,13 +86,19 @@ function(bonetk_module name)
   if(BUILD_TESTING AND tests)
     add_executable(${target}Tests ${tests})
     bonetk_compile_settings(${target}Tests)
+    # Kernels that are not installed are tested too.
+    target_include_directories(${target}Tests PRIVATE src ${concerns})
     target_link_libraries(${target}Tests PRIVATE ${target} GTest::gtest_main GTest::gmock)
+    if(NOT arg_NO_PRECOMPILE)
+      bonetk_precompile_tests(${target}Tests)
+    endif()
     gtest_discover_tests(${target}Tests TEST_PREFIX "${name}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
   endif()
   file(GLOB benchmarks CONFIGURE_DEPENDS test/*Benchmark.cxx)
   if(BONETK_BUILD_BENCHMARKS AND benchmarks)
     add_executable(${target}Benchmarks ${benchmarks})
     bonetk_compile_settings(${target}Benchmarks)
+    target_include_directories(${target}Benchmarks PRIVATE src ${concerns})
     target_link_libraries(${target}Benchmarks PRIVATE ${target} benchmark::benchmark_main)
   endif()
 endfunction()

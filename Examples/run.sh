@@ -22,7 +22,7 @@ done
 
 "$root/CMake/install-packages.sh"
 (cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release)
-bonetk=$root/build/release/Examples/bonetk/bonetk
+bonetk=$root/build/release/Apps/bonetk/bonetk
 
 mkdir -p "$root/out"
 if [ $# -eq 0 ]; then

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneBoneImage.h"
+#include "boneLabelCrop.h"
 #include "boneCanvas.h"
 #include "boneMeshImageMetrics.h"
 #include "bonePlaneView.h"

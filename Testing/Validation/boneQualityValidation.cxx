@@ -5,7 +5,7 @@
 // quality stage, and the contours of all slices. boneQualityValidation improve MESH.vtu OUT.vtu BOUND CONTOURS.vtp
 // LABELS LABEL: runs the quality stage, prints a "name value" a line; CONTOURS and LABELS may be empty.
 // boneQualityValidation methods MESH.vtu: volume and inversions of the three smoothing methods by iterations.
-#include "boneBoneImage.h"
+#include "boneLabelCrop.h"
 #include "boneMeshImageMetrics.h"
 #include "boneContourIO.h"
 #include "boneMeshIO.h"

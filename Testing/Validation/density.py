@@ -6,7 +6,7 @@ degree with boneDensityValidation, checks degrees 0 to 6 with check_mesh.py wher
 Documentation/validation/density.md with density_phantom.png (needs gnuplot). Environment: BONETK, BONETK_DATA,
 BONETK_VALIDATION (boneDensityValidation), BONETK_BENCHMARKS (boneDensityBenchmarks; without it there is no table of speed).
 
-    BONETK=build/test/Examples/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneDensityValidation \
+    BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneDensityValidation \
         BONETK_BENCHMARKS=build/test/Modules/Density/boneDensityBenchmarks Testing/Validation/density.py
 """
 import hashlib

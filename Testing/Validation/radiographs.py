@@ -7,7 +7,7 @@ Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_VALIDATI
 of speed), BONETK_BENCHMARKS (boneRadiographBenchmarks: its table); without the last two there are no such tables.
 Arguments: bone's name in the table, CT, label map (below BONETK_DATA), label.
 
-    BONETK=build/test/Examples/bonetk/bonetk Testing/Validation/radiographs.py "hip bone" hip_ct/hip_ct.nii.gz \
+    BONETK=build/test/Apps/bonetk/bonetk Testing/Validation/radiographs.py "hip bone" hip_ct/hip_ct.nii.gz \
         hip_ct/hip_labels.nii.gz 2
 """
 import json

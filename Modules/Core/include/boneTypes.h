@@ -37,7 +37,8 @@ enum Region : int
 {
   Outside = 0,
   Cortical = 1,
-  Spongy = 2,
+  Trabecular = 2,
+  Spongy = Trabecular,
   Medullary = 3
 };
 

@@ -4,15 +4,11 @@
 #ifndef boneContinuousDensity_h
 #define boneContinuousDensity_h
 
+#include "boneExecution.h"
 #include "boneMeshArrays.h"
-
-#include <functional>
 
 namespace bone
 {
-/** Calls body(i) for each i in [0, count), in any order and perhaps at once; body writes what belongs to i alone. */
-using DensityLoop = std::function<void(std::size_t count, const std::function<void(std::size_t)> & body)>;
-
 /** What MakeDensityContinuous did. */
 struct ContinuousDensityReport
 {
@@ -31,12 +27,12 @@ struct ContinuousDensityReport
  * inverses (one small matrix for all of them): a few dozen iterations, whatever the degree and the mesh.
  *
  * All tetrahedra must have the degree mesh.maximumDegree >= 1 and positive volume, else std::invalid_argument. The
- * result does not depend on how `loop` runs. */
+ * result does not depend on the number of threads. Progress is by iterations. */
 ContinuousDensityReport
-MakeDensityContinuous(MeshArrays &        mesh,
-                      const DensityLoop & loop,
-                      double              tolerance = 1e-7,
-                      int                 maximumIterations = 500);
+MakeDensityContinuous(MeshArrays &      mesh,
+                      const Execution & execution,
+                      double            tolerance = 1e-7,
+                      int               maximumIterations = 500);
 } // namespace bone
 
 #endif

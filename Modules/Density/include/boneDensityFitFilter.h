@@ -4,32 +4,16 @@
 #ifndef boneDensityFitFilter_h
 #define boneDensityFitFilter_h
 
-#include "boneDensityMesh.h"
 #include "boneFitDensity.h"
+#include "boneMeshFilter.h"
 
 #include <itkImage.h>
-#include <itkMultiThreaderBase.h>
-#include <itkProcessObject.h>
 
-#include <ostream>
 #include <type_traits>
 #include <vector>
 
 namespace bone
 {
-/** How an image is interpolated between its voxels. */
-enum class DensityInterpolator : int
-{
-  Linear,
-  CubicBSpline
-};
-
-inline std::ostream &
-operator<<(std::ostream & os, DensityInterpolator interpolator)
-{
-  return os << (interpolator == DensityInterpolator::Linear ? "Linear" : "CubicBSpline");
-}
-
 /** \class DensityFitFilter
  * \brief Fits a Bernstein polynomial to an image in every tetrahedron of a mesh (paper 3).
  *
@@ -41,35 +25,21 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  *
  * Each tetrahedron samples the interpolated image at a fixed pattern of interior points (\ref DensityFitKernel), more
  * than twice as many as there are coefficients and several for each voxel in it (\ref DensityFitPlan); their
- * least-squares fit is p0. The voxels whose centres lie in the tetrahedron, which interpolation blurs, then have their
- * say: the result p minimises  (1/V) sum_v (p(x_v) - y_v)^2 + (1/VoxelWeight) mean (p - p0)^2  (\ref PenalizedFit), V
+ * least-squares fit is p0. The voxels whose centres lie in the tetrahedron, which interpolation blurs, are then
+ * added: the result p minimises  (1/V) sum_v (p(x_v) - y_v)^2 + (1/VoxelWeight) mean (p - p0)^2  (\ref PenalizedFit), V
  * being their number or the tetrahedron's volume in voxels, whichever is more. A tetrahedron without voxels keeps p0,
  * so nothing swings where voxels are few. Only points inside the tetrahedron count, so a bone's surface is as sharp as
  * the mesh. Where a mesh reaches beyond the outermost voxel centres, the nearest value between them is taken.
  *
- * Parameters:
- * - Degree: 0..8, default 3; 1, 4, 10, 20, 35, 56, 84, 120, 165 coefficients for each tetrahedron.
- * - Continuous: one least-squares spline for each region (\ref MakeDensityContinuous) in place of tetrahedra on their
- *   own; needs degree 1 or more. Jumps remain between regions. Default off.
- * - Interpolator: Linear (default), which is freed of its error by curvature (\ref QuadraticSampler) so that the mass
- * is kept, or CubicBSpline (\ref CubicSampler).
- * - VoxelWeight: of the voxels' own values against the interpolated image, no unit, default 4; 0: the interpolated
- * image alone.
- * - Tikhonov: weight of the term that holds control values near those of the lower degree (\ref DensityFitKernel),
- *   default 1e-4, no unit; 0: plain least squares, which reproduces polynomials of the degree exactly. Linear fields
- *   are exact in any case.
- * - OvershootLimit: how far control values may lie beyond the tetrahedron's data, in ranges of those data (no unit,
- *   infinite: anywhere); where they lie further, the parts of highest degree are reduced (\ref LimitControlValues).
- *   Default 8.
- * - SurfaceMargin (mm): what lies nearer to the mesh's surface counts as what lies this deep straight inward of it, so
- *   that voxels partly outside the bone leave no dark rim. Default 0: the image as it is.
- * - InterfaceMargin (mm): the same for the faces between regions, from either side, so that a scanner's blur does not
- *   mix the layers' densities. Default 0.
- * - MaximumError (density units): above 0, each tetrahedron takes the lowest degree, up to Degree, whose root mean
- * square error over its samples and voxels is no more than this. Not with Continuous. Default 0: all have Degree.
- * - HoldOut: the voxels of IsHeldOut(), one in five, play no part in the fit, so that the error at them tells what the
- *   model says between voxels. Default off.
- * - Quantity: what the image's values mean, default HounsfieldUnit.
+ * Parameters: \ref DensityFitParameters. Continuous replaces the tetrahedra's polynomials by one least-squares spline for
+ * each region (\ref MakeDensityContinuous); jumps remain between regions; it needs degree 1 or more. The linear
+ * interpolator is freed of its error by curvature (\ref QuadraticSampler), so that the mass is kept. With VoxelWeight 0
+ * the interpolated image alone counts, with Tikhonov 0 the fit is plain least squares, which reproduces polynomials of the
+ * degree exactly; linear fields are exact in any case. Where control values lie beyond OvershootLimit, the parts of
+ * highest degree are reduced (\ref LimitControlValues). SurfaceMargin keeps voxels partly outside the bone from leaving a
+ * dark rim, InterfaceMargin keeps a scanner's blur from mixing the densities of two layers. MaximumError counts samples
+ * and voxels of the tetrahedron; not with Continuous. HoldOut leaves out the voxels of IsHeldOut(), one in five, so that
+ * the error at them tells what the model says between voxels.
  *
  * Throws itk::ExceptionObject where an input is missing, the image is empty, the mesh has no tetrahedra or points that
  * are not finite, the mesh lies wholly outside the image, a voxel value used is not finite, or a parameter does not
@@ -77,70 +47,26 @@ operator<<(std::ostream & os, DensityInterpolator interpolator)
  *
  * \sa DensityImageFilter */
 template <typename TImage = itk::Image<float, 3>, typename TMesh = DensityMesh<double>>
-class DensityFitFilter : public itk::ProcessObject
+class DensityFitFilter : public MeshFilter<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(DensityFitFilter);
   using Self = DensityFitFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshFilter<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(DensityFitFilter, itk::ProcessObject);
+  itkTypeMacro(DensityFitFilter, MeshFilter);
 
   using ImageType = TImage;
-  using MeshType = TMesh;
   static_assert(TImage::ImageDimension == 3, "The image must be three-dimensional.");
 
-  using Superclass::SetInput;
-  void
-  SetInput(const TMesh * mesh);
-  void
-  SetMesh(const TMesh * mesh)
-  {
-    this->SetInput(mesh);
-  }
-  const TMesh *
-  GetInput() const;
-  const TMesh *
-  GetMesh() const
-  {
-    return this->GetInput();
-  }
   itkSetInputMacro(Image, TImage);
   itkGetInputMacro(Image, TImage);
   itkSetInputMacro(Weights, TImage);
   itkGetInputMacro(Weights, TImage);
 
-  TMesh *
-  GetOutput();
-  const TMesh *
-  GetOutput() const;
-
-  itkSetMacro(Degree, int);
-  itkGetConstMacro(Degree, int);
-  itkSetMacro(Continuous, bool);
-  itkGetConstMacro(Continuous, bool);
-  itkBooleanMacro(Continuous);
-  itkSetMacro(Tikhonov, double);
-  itkGetConstMacro(Tikhonov, double);
-  itkSetEnumMacro(Interpolator, DensityInterpolator);
-  itkGetEnumMacro(Interpolator, DensityInterpolator);
-  itkSetMacro(VoxelWeight, double);
-  itkGetConstMacro(VoxelWeight, double);
-  itkSetMacro(OvershootLimit, double);
-  itkGetConstMacro(OvershootLimit, double);
-  itkSetMacro(SurfaceMargin, double);
-  itkGetConstMacro(SurfaceMargin, double);
-  itkSetMacro(InterfaceMargin, double);
-  itkGetConstMacro(InterfaceMargin, double);
-  itkSetMacro(MaximumError, double);
-  itkGetConstMacro(MaximumError, double);
-  itkSetMacro(HoldOut, bool);
-  itkGetConstMacro(HoldOut, bool);
-  itkBooleanMacro(HoldOut);
-  itkSetEnumMacro(Quantity, DensityQuantity);
-  itkGetEnumMacro(Quantity, DensityQuantity);
+  BONE_FILTER_PARAMETERS(DensityFitParameters, BONE_DENSITY_FIT_PARAMETERS)
 
   /** After an update: share of the sample points that lay beyond the image's border (half a voxel outside its outermost
    * centres) and took the nearest value. */
@@ -160,16 +86,12 @@ public:
   /** After an update: the number of coefficients, those that Continuous makes one counted once. */
   itkGetConstMacro(NumberOfFreeCoefficients, std::size_t);
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
-
 protected:
   DensityFitFilter();
   ~DensityFitFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateData() override;
   void
@@ -177,7 +99,7 @@ protected:
 
 private:
   void
-  VerifyInputs(const MeshArrays & arrays) const;
+  VerifyInputs() const;
 
   using RealType = std::conditional_t<std::is_same_v<typename TImage::PixelType, double>, double, float>;
 
@@ -193,21 +115,10 @@ private:
   MakeWeights(const VoxelGrid & grid) const;
 
   void
-  Fit(MeshArrays & arrays);
+  Fit(MeshArrays & arrays, const Execution & execution);
 
-  int                 m_Degree{ 3 };
-  bool                m_Continuous{ false };
-  double              m_Tikhonov{ 1e-4 };
-  DensityInterpolator m_Interpolator{ DensityInterpolator::Linear };
-  double              m_VoxelWeight{ 4.0 };
-  double              m_OvershootLimit{ 8.0 };
-  double              m_SurfaceMargin{ 0.0 };
-  double              m_InterfaceMargin{ 0.0 };
-  double              m_MaximumError{ 0.0 };
-  bool                m_HoldOut{ false };
-  DensityQuantity     m_Quantity{ DensityQuantity::HounsfieldUnit };
-  DensityFitReport    m_Report;
-  std::size_t         m_NumberOfFreeCoefficients{ 0 };
+  DensityFitReport m_Report;
+  std::size_t      m_NumberOfFreeCoefficients{ 0 };
 };
 
 extern template class DensityFitFilter<itk::Image<float, 3>, DensityMesh<double>>;

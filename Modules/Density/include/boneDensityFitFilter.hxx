@@ -34,81 +34,21 @@ SamplerOf(TSampler sampler)
 template <typename TImage, typename TMesh>
 DensityFitFilter<TImage, TMesh>::DensityFitFilter()
 {
-  this->SetPrimaryInputName("Mesh");
   this->AddRequiredInputName("Image");
   this->AddOptionalInputName("Weights");
-  this->SetNumberOfRequiredOutputs(1);
-  this->SetNthOutput(0, this->MakeOutput(0));
-}
-
-template <typename TImage, typename TMesh>
-itk::DataObject::Pointer
-DensityFitFilter<TImage, TMesh>::MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType)
-{
-  return TMesh::New().GetPointer();
 }
 
 template <typename TImage, typename TMesh>
 void
-DensityFitFilter<TImage, TMesh>::SetInput(const TMesh * mesh)
-{
-  this->SetNthInput(0, const_cast<TMesh *>(mesh));
-}
-
-template <typename TImage, typename TMesh>
-const TMesh *
-DensityFitFilter<TImage, TMesh>::GetInput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryInput());
-}
-
-template <typename TImage, typename TMesh>
-TMesh *
-DensityFitFilter<TImage, TMesh>::GetOutput()
-{
-  return itkDynamicCastInDebugMode<TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TImage, typename TMesh>
-const TMesh *
-DensityFitFilter<TImage, TMesh>::GetOutput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TImage, typename TMesh>
-void
-DensityFitFilter<TImage, TMesh>::VerifyPreconditions() ITKv5_CONST
+DensityFitFilter<TImage, TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
-  if (m_Degree < 0 || m_Degree > MaximumBernsteinDegree)
-  {
-    itkExceptionMacro("Degree is " << m_Degree << ", but must be 0 to " << MaximumBernsteinDegree << ".");
-  }
-  if (!(m_Tikhonov >= 0 && std::isfinite(m_Tikhonov)))
-  {
-    itkExceptionMacro("Tikhonov is " << m_Tikhonov << ", but must be 0 or more and finite.");
-  }
-  const std::pair<const char *, double> notNegative[] = { { "VoxelWeight", m_VoxelWeight },
-                                                          { "SurfaceMargin", m_SurfaceMargin },
-                                                          { "InterfaceMargin", m_InterfaceMargin },
-                                                          { "MaximumError", m_MaximumError } };
-  for (const auto & [name, value] : notNegative)
-  {
-    if (!(value >= 0 && std::isfinite(value)))
-    {
-      itkExceptionMacro("" << name << " is " << value << ", but must be 0 or more and finite.");
-    }
-  }
-  if (!(m_OvershootLimit >= 0))
-  {
-    itkExceptionMacro("OvershootLimit is " << m_OvershootLimit << ", but must be 0 or more.");
-  }
-  if (m_Continuous && m_MaximumError > 0)
+  this->VerifyParameters();
+  if (m_Parameters.continuous && m_Parameters.maximumError > 0)
   {
     itkExceptionMacro("A continuous density has one degree: set MaximumError to 0, or turn Continuous off.");
   }
-  if (m_Continuous && m_Degree < 1)
+  if (m_Parameters.continuous && m_Parameters.degree < 1)
   {
     itkExceptionMacro("A continuous density needs Degree 1 or more: raise it, or turn Continuous off.");
   }
@@ -116,16 +56,8 @@ DensityFitFilter<TImage, TMesh>::VerifyPreconditions() ITKv5_CONST
 
 template <typename TImage, typename TMesh>
 void
-DensityFitFilter<TImage, TMesh>::VerifyInputs(const MeshArrays & arrays) const
+DensityFitFilter<TImage, TMesh>::VerifyInputs() const
 {
-  if (arrays.tetrahedra.empty())
-  {
-    itkExceptionMacro("The input mesh has no tetrahedra.");
-  }
-  if (!std::all_of(arrays.points.begin(), arrays.points.end(), [](const Vector3 & p) { return p.allFinite(); }))
-  {
-    itkExceptionMacro("A point of the input mesh is not finite.");
-  }
   if (this->GetImage()->GetBufferedRegion().GetNumberOfPixels() == 0)
   {
     itkExceptionMacro("The input 'Image' has no voxels.");
@@ -173,7 +105,7 @@ DensityFitFilter<TImage, TMesh>::MakeInterpolator(const TPixel *     buffer,
                                                   const VoxelGrid &  grid,
                                                   const MeshArrays & arrays) const
 {
-  if (m_Interpolator == DensityInterpolator::Linear)
+  if (m_Parameters.interpolator == DensityInterpolator::Linear)
   {
     return SamplerOf(QuadraticSampler<TPixel>(buffer, grid.size));
   }
@@ -233,7 +165,7 @@ DensityFitFilter<TImage, TMesh>::MakeWeights(const VoxelGrid & grid) const
 
 template <typename TImage, typename TMesh>
 void
-DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays)
+DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays, const Execution & execution)
 {
   using PixelType = typename TImage::PixelType;
   const TImage *  image = this->GetImage();
@@ -241,7 +173,7 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays)
   from.grid = MakeVoxelGrid(*image, image->GetBufferedRegion());
   from.voxels = SamplerOf(LinearSampler<PixelType>(image->GetBufferPointer(), from.grid.size));
   std::vector<RealType> kept;
-  if (m_HoldOut)
+  if (m_Parameters.holdOut)
   {
     kept = this->WithoutHeldOutVoxels(from.grid);
     from.interpolated = this->MakeInterpolator(kept.data(), from.grid, arrays);
@@ -252,21 +184,7 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays)
   }
   from.weights = this->MakeWeights(from.grid);
 
-  DensityFitSettings settings;
-  settings.degree = m_Degree;
-  settings.tikhonov = m_Tikhonov;
-  settings.voxelWeight = m_VoxelWeight;
-  settings.overshootLimit = m_OvershootLimit;
-  settings.surfaceMargin = m_SurfaceMargin;
-  settings.interfaceMargin = m_InterfaceMargin;
-  settings.maximumError = m_MaximumError;
-  settings.holdOut = m_HoldOut;
-
-  this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
-  const DensityLoop loop = [this](std::size_t count, const std::function<void(std::size_t)> & body) {
-    this->GetMultiThreader()->ParallelizeArray(0, count, body, this);
-  };
-  m_Report = FitDensity(arrays, from, settings, loop);
+  m_Report = FitDensity(arrays, from, m_Parameters, execution);
   if (m_Report.outside >= m_Report.samples)
   {
     itkExceptionMacro("The mesh lies wholly outside the input 'Image': are both of the same scan, and in LPS mm?");
@@ -281,36 +199,28 @@ template <typename TImage, typename TMesh>
 void
 DensityFitFilter<TImage, TMesh>::GenerateData()
 {
-  MeshArrays arrays = this->GetInput()->GetArrays();
-  this->VerifyInputs(arrays);
-  arrays.quantity = m_Quantity;
-  this->Fit(arrays);
+  MeshArrays      arrays = this->CopyInput();
+  const Execution execution(this);
+  this->VerifyInputs();
+  arrays.quantity = m_Parameters.quantity;
+  this->Fit(arrays, execution.Part(0.0, m_Parameters.continuous ? 0.5 : 1.0));
   m_NumberOfFreeCoefficients = 0;
   for (const int degree : arrays.degree)
   {
     m_NumberOfFreeCoefficients += BernsteinCount(degree);
   }
-  if (m_Continuous)
+  if (m_Parameters.continuous)
   {
-    const DensityLoop loop = [this](std::size_t count, const std::function<void(std::size_t)> & body) {
-      this->GetMultiThreader()->ParallelizeArray(0, count, body, nullptr);
-      if (this->GetAbortGenerateData())
-      {
-        throw itk::ProcessAborted(__FILE__, __LINE__);
-      }
-    };
     try
     {
-      m_NumberOfFreeCoefficients = MakeDensityContinuous(arrays, loop).freeCoefficients;
+      m_NumberOfFreeCoefficients = MakeDensityContinuous(arrays, execution.Part(0.5, 1.0)).freeCoefficients;
     }
     catch (const std::logic_error & error)
     {
       itkExceptionMacro("" << error.what());
     }
   }
-  TMesh * output = this->GetOutput();
-  output->SetArrays(std::move(arrays));
-  output->SetBufferedRegion(output->GetRequestedRegion());
+  this->SetResult(std::move(arrays));
 }
 
 template <typename TImage, typename TMesh>
@@ -318,17 +228,7 @@ void
 DensityFitFilter<TImage, TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "Degree: " << m_Degree << '\n';
-  os << indent << "Continuous: " << (m_Continuous ? "On" : "Off") << '\n';
-  os << indent << "Tikhonov: " << m_Tikhonov << '\n';
-  os << indent << "Quantity: " << DensityQuantityName(m_Quantity) << '\n';
-  os << indent << "Interpolator: " << m_Interpolator << '\n';
-  os << indent << "VoxelWeight: " << m_VoxelWeight << '\n';
-  os << indent << "OvershootLimit: " << m_OvershootLimit << '\n';
-  os << indent << "SurfaceMargin: " << m_SurfaceMargin << '\n';
-  os << indent << "InterfaceMargin: " << m_InterfaceMargin << '\n';
-  os << indent << "MaximumError: " << m_MaximumError << '\n';
-  os << indent << "HoldOut: " << (m_HoldOut ? "On" : "Off") << '\n';
+  PrintParameters(os, indent, m_Parameters);
   os << indent << "OutsideFraction: " << this->GetOutsideFraction() << '\n';
   os << indent << "NumberOfFreeCoefficients: " << m_NumberOfFreeCoefficients << '\n';
 }

@@ -4,29 +4,17 @@
 #ifndef boneFitDensity_h
 #define boneFitDensity_h
 
-#include "boneContinuousDensity.h"
+#include "boneDensityFitParameters.h"
+#include "boneExecution.h"
+#include "boneMeshArrays.h"
 #include "boneVoxelGrid.h"
 
 #include <functional>
-#include <limits>
 
 namespace bone
 {
 /** Values of an image at places in index coordinates, counted from the grid's first voxel. Called from many threads. */
 using ImageSampler = std::function<void(const Vector3 * indices, std::size_t count, double * values)>;
-
-/** Parameters of a fit; see DensityFitFilter for their meaning. */
-struct DensityFitSettings
-{
-  int    degree{ 3 };
-  double tikhonov{ 1e-4 };
-  double voxelWeight{ 4.0 };
-  double overshootLimit{ std::numeric_limits<double>::infinity() };
-  double surfaceMargin{ 0.0 };
-  double interfaceMargin{ 0.0 };
-  double maximumError{ 0.0 };
-  bool   holdOut{ false };
-};
 
 /** What is fitted to. */
 struct DensityFitImage
@@ -60,13 +48,13 @@ IsHeldOut(int i, int j, int k)
 }
 
 /** Replaces the mesh's degrees and coefficients by a fit to the image; quantity and all else stay as they are. The
- * result does not depend on how `loop` runs. Values that are not finite are reported, and the coefficients are then of
+ * result does not depend on the number of threads. Values that are not finite are reported, and the coefficients are then of
  * no use. The work of DensityFitFilter on plain arrays. Throws as DensityFitPlan. */
 DensityFitReport
-FitDensity(MeshArrays &               mesh,
-           const DensityFitImage &    image,
-           const DensityFitSettings & settings,
-           const DensityLoop &        loop);
+FitDensity(MeshArrays &                 mesh,
+           const DensityFitImage &      image,
+           const DensityFitParameters & parameters,
+           const Execution &            execution);
 
 /** Draws control values of a polynomial in until none lies further than `margin` beyond [low, high]: parts of the
  * highest degrees are reduced first, and the mean is kept. Returns whether there was anything to do. */

@@ -25,9 +25,9 @@ using Vector = Eigen::VectorXd;
 class MassSystem
 {
 public:
-  MassSystem(const MeshArrays & mesh, const SharedCoefficients & shared, const DensityLoop & loop)
+  MassSystem(const MeshArrays & mesh, const SharedCoefficients & shared, const Execution & execution)
     : m_Shared(shared)
-    , m_Loop(loop)
+    , m_Execution(execution)
     , m_Cells(mesh.tetrahedra.size())
     , m_Count(BernsteinCount(mesh.maximumDegree))
     , m_Mass(Eigen::Map<const Eigen::MatrixXd>(BernsteinGramMatrix(mesh.maximumDegree, mesh.maximumDegree).data(),
@@ -115,7 +115,7 @@ public:
   {
     const std::size_t   chunks = (m_Shared.size + ChunkSize - 1) / ChunkSize;
     std::vector<double> partial(chunks);
-    m_Loop(chunks, [&](std::size_t chunk) {
+    m_Execution.For(chunks, [&](std::size_t chunk) {
       const std::size_t begin = chunk * ChunkSize, count = std::min(ChunkSize, m_Shared.size - begin);
       partial[chunk] = a.segment(begin, count).dot(b.segment(begin, count));
     });
@@ -132,7 +132,7 @@ private:
   void
   ForChunks(const TBody & body) const
   {
-    m_Loop((m_Shared.size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
+    m_Execution.For((m_Shared.size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
       const std::size_t end = std::min((chunk + 1) * ChunkSize, m_Shared.size);
       for (std::size_t i = chunk * ChunkSize; i < end; ++i)
       {
@@ -146,7 +146,7 @@ private:
   void
   ForBlocks(const Eigen::MatrixXd & matrix, const TGather & gather)
   {
-    m_Loop((m_Cells + BlockSize - 1) / BlockSize, [&](std::size_t block) {
+    m_Execution.For((m_Cells + BlockSize - 1) / BlockSize, [&](std::size_t block) {
       const std::size_t begin = block * BlockSize, count = std::min(BlockSize, m_Cells - begin);
       Eigen::MatrixXd   in(m_Count, count);
       for (std::size_t t = 0; t < count; ++t)
@@ -171,7 +171,7 @@ private:
   }
 
   const SharedCoefficients & m_Shared;
-  const DensityLoop &        m_Loop;
+  const Execution            m_Execution;
   std::size_t                m_Cells;
   std::size_t                m_Count;
   Eigen::MatrixXd            m_Mass;
@@ -183,7 +183,7 @@ private:
 } // namespace
 
 ContinuousDensityReport
-MakeDensityContinuous(MeshArrays & mesh, const DensityLoop & loop, double tolerance, int maximumIterations)
+MakeDensityContinuous(MeshArrays & mesh, const Execution & execution, double tolerance, int maximumIterations)
 {
   const int degree = mesh.maximumDegree;
   if (degree < 1 || std::any_of(mesh.degree.begin(), mesh.degree.end(), [degree](int d) { return d != degree; }))
@@ -191,7 +191,7 @@ MakeDensityContinuous(MeshArrays & mesh, const DensityLoop & loop, double tolera
     throw std::invalid_argument("A continuous density needs one degree of 1 or more in all tetrahedra.");
   }
   const SharedCoefficients shared = ShareCoefficients(mesh);
-  MassSystem               system(mesh, shared, loop);
+  MassSystem               system(mesh, shared, execution.Silent());
   ContinuousDensityReport  report;
   report.freeCoefficients = shared.size;
 
@@ -200,6 +200,7 @@ MakeDensityContinuous(MeshArrays & mesh, const DensityLoop & loop, double tolera
   Vector       r = right - system.Apply(x);
   const double target = tolerance * std::sqrt(system.Dot(right, right));
   double       size = std::sqrt(system.Dot(r, r));
+  const double begin = size;
   Vector       p;
   double       rz = 0;
   while (size > target && report.iterations < maximumIterations)
@@ -214,6 +215,7 @@ MakeDensityContinuous(MeshArrays & mesh, const DensityLoop & loop, double tolera
     r -= step * q;
     size = std::sqrt(system.Dot(r, r));
     ++report.iterations;
+    execution.Report(std::log(begin / size) / std::log(begin / target));
   }
   report.residual = target > 0 ? size / target * tolerance : 0.0;
   for (std::size_t use = 0; use < shared.global.size(); ++use)

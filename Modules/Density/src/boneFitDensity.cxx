@@ -44,7 +44,7 @@ VoxelPenalties(int degree, double tikhonov, double voxelWeight)
 /** What all tetrahedra of one degree share. */
 struct Pass
 {
-  Pass(const MeshArrays & mesh, const std::vector<IdType> & cells, double voxel, int n, const DensityFitSettings & s)
+  Pass(const MeshArrays & mesh, const std::vector<IdType> & cells, double voxel, int n, const DensityFitParameters & s)
     : degree(n)
     , count(BernsteinCount(n))
     , plan(mesh, cells, voxel, n, s.tikhonov)
@@ -133,10 +133,10 @@ InterfaceFaces(const MeshArrays & mesh)
 class Fitter
 {
 public:
-  Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitSettings & settings);
+  Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitParameters & parameters);
 
   DensityFitReport
-  Run(const DensityLoop & loop);
+  Run(const Execution & execution);
 
 private:
   void
@@ -162,32 +162,32 @@ private:
 
   MeshArrays &               m_Mesh;
   const DensityFitImage &    m_Image;
-  const DensityFitSettings & m_Settings;
+  const DensityFitParameters & m_Parameters;
   Eigen::Matrix3d            m_ToIndex;
   std::vector<Rim>           m_Rims;     // those with a margin; the mesh's surface last
   std::vector<Finding>       m_Findings; // of each tetrahedron
   std::vector<char>          m_Open;     // of each tetrahedron: its error is above the bound
 };
 
-Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitSettings & settings)
+Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitParameters & parameters)
   : m_Mesh(mesh)
   , m_Image(image)
-  , m_Settings(settings)
+  , m_Parameters(parameters)
   , m_ToIndex(image.grid.axes.inverse())
   , m_Findings(mesh.tetrahedra.size())
   , m_Open(mesh.tetrahedra.size(), 1)
 {
-  if ((settings.surfaceMargin > 0 || settings.interfaceMargin > 0) && mesh.neighbors.empty())
+  if ((parameters.surfaceMargin > 0 || parameters.interfaceMargin > 0) && mesh.neighbors.empty())
   {
     mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
   }
-  if (settings.interfaceMargin > 0)
+  if (parameters.interfaceMargin > 0)
   {
-    this->AddRim(InterfaceFaces(mesh), settings.interfaceMargin);
+    this->AddRim(InterfaceFaces(mesh), parameters.interfaceMargin);
   }
-  if (settings.surfaceMargin > 0)
+  if (parameters.surfaceMargin > 0)
   {
-    this->AddRim(BoundaryFaces(mesh), settings.surfaceMargin);
+    this->AddRim(BoundaryFaces(mesh), parameters.surfaceMargin);
   }
 }
 
@@ -304,7 +304,7 @@ Fitter::FindVoxels(Batch & batch, std::size_t c, std::vector<CellVoxel> & found)
   {
     const auto & [i, j, k] = voxel.index;
     Vector3 index(i, j, k);
-    if ((m_Settings.holdOut && IsHeldOut(i, j, k)) || (cell.nearSurface && this->MoveInward(index)))
+    if ((m_Parameters.holdOut && IsHeldOut(i, j, k)) || (cell.nearSurface && this->MoveInward(index)))
     {
       continue;
     }
@@ -397,7 +397,7 @@ Fitter::SquaredError(const Pass & pass, const Batch & batch, std::size_t c) cons
     const double rest = BernsteinValue(pass.degree, coefficients, cell.places[v]) - cell.values[v];
     ofVoxels += rest * rest;
   }
-  const double share = m_Settings.voxelWeight / std::max(cell.volume, static_cast<double>(cell.values.size()));
+  const double share = m_Parameters.voxelWeight / std::max(cell.volume, static_cast<double>(cell.values.size()));
   return (ofSamples + share * ofVoxels) / (1 + share * static_cast<double>(cell.values.size()));
 }
 
@@ -414,16 +414,16 @@ Fitter::Finish(const Pass & pass, Batch & batch)
     const auto [least, largest] = std::minmax_element(fitted, fitted + pass.count);
     const double beyond = std::max({ *largest - cell.high, cell.low - *least, 0.0 });
     cell.found.overshoot = range > 0 ? static_cast<float>(beyond / range) : 0.0F;
-    cell.found.limited = beyond > m_Settings.overshootLimit * range;
+    cell.found.limited = beyond > m_Parameters.overshootLimit * range;
     cell.found.sparse = cell.values.size() < pass.count;
     if (cell.found.limited)
     {
-      LimitControlValues(pass.degree, cell.low, cell.high, m_Settings.overshootLimit * range, fitted);
+      LimitControlValues(pass.degree, cell.low, cell.high, m_Parameters.overshootLimit * range, fitted);
     }
     m_Findings[t] = cell.found;
-    if (m_Settings.maximumError > 0)
+    if (m_Parameters.maximumError > 0)
     {
-      m_Open[t] = this->SquaredError(pass, batch, c) > m_Settings.maximumError * m_Settings.maximumError ? 1 : 0;
+      m_Open[t] = this->SquaredError(pass, batch, c) > m_Parameters.maximumError * m_Parameters.maximumError ? 1 : 0;
     }
     m_Mesh.degree[t] = pass.degree;
     std::copy_n(fitted, pass.count, &m_Mesh.coefficients[t * row]);
@@ -451,7 +451,7 @@ Fitter::FitBatch(const Pass & pass, Batch & batch)
     {
       this->WeighSamples(pass, batch, c);
     }
-    if (m_Settings.voxelWeight > 0)
+    if (m_Parameters.voxelWeight > 0)
     {
       this->AddVoxels(pass, batch, c);
     }
@@ -484,15 +484,17 @@ Fitter::Summarize(DensityFitReport & report) const
 }
 
 DensityFitReport
-Fitter::Run(const DensityLoop & loop)
+Fitter::Run(const Execution & execution)
 {
-  m_Mesh.maximumDegree = m_Settings.degree;
-  m_Mesh.degree.assign(m_Mesh.tetrahedra.size(), m_Settings.degree);
-  m_Mesh.coefficients.assign(m_Mesh.tetrahedra.size() * BernsteinCount(m_Settings.degree), 0.0);
+  m_Mesh.maximumDegree = m_Parameters.degree;
+  m_Mesh.degree.assign(m_Mesh.tetrahedra.size(), m_Parameters.degree);
+  m_Mesh.coefficients.assign(m_Mesh.tetrahedra.size() * BernsteinCount(m_Parameters.degree), 0.0);
   const double voxelVolume = m_Image.grid.VoxelVolume();
 
   DensityFitReport report;
-  for (int degree = m_Settings.maximumError > 0 ? 0 : m_Settings.degree; degree <= m_Settings.degree; ++degree)
+  const int        first = m_Parameters.maximumError > 0 ? 0 : m_Parameters.degree;
+  const double     passes = m_Parameters.degree - first + 1;
+  for (int degree = first; degree <= m_Parameters.degree; ++degree)
   {
     std::vector<IdType> cells;
     for (std::size_t t = 0; t < m_Open.size(); ++t)
@@ -502,9 +504,9 @@ Fitter::Run(const DensityLoop & loop)
         cells.push_back(static_cast<IdType>(t));
       }
     }
-    const Pass                    pass(m_Mesh, cells, voxelVolume, degree, m_Settings);
+    const Pass                    pass(m_Mesh, cells, voxelVolume, degree, m_Parameters);
     std::vector<DensityFitReport> reports(pass.plan.GetBatches().size());
-    loop(reports.size(), [&](std::size_t b) {
+    execution.Part((degree - first) / passes, (degree - first + 1) / passes).For(reports.size(), [&](std::size_t b) {
       Batch batch(pass.plan.GetBatches()[b], pass.count);
       this->FitBatch(pass, batch);
       reports[b] = batch.report;
@@ -545,10 +547,10 @@ ClearUnused(MeshArrays & mesh)
 DensityFitReport
 FitDensity(MeshArrays &               mesh,
            const DensityFitImage &    image,
-           const DensityFitSettings & settings,
-           const DensityLoop &        loop)
+           const DensityFitParameters & parameters,
+           const Execution &          execution)
 {
-  const DensityFitReport report = Fitter(mesh, image, settings).Run(loop);
+  const DensityFitReport report = Fitter(mesh, image, parameters).Run(execution);
   ClearUnused(mesh);
   return report;
 }

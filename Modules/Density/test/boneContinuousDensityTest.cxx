@@ -17,15 +17,6 @@ namespace
 {
 using namespace bone;
 
-void
-OneByOne(std::size_t count, const std::function<void(std::size_t)> & body)
-{
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    body(i);
-  }
-}
-
 MeshArrays
 RandomDensity(int degree, unsigned seed)
 {
@@ -74,7 +65,7 @@ TEST_P(ContinuousOfDegree, IsContinuousWithinRegionsAndJumpsBetweenThem)
   const int         degree = GetParam();
   MeshArrays        mesh = RandomDensity(degree, 3);
   const std::size_t count = BernsteinCount(degree);
-  MakeDensityContinuous(mesh, OneByOne);
+  MakeDensityContinuous(mesh, bone::Execution());
   // Values on the points of a lattice that all lie on vertices, edges and faces: the same from every tetrahedron.
   std::map<std::pair<int, std::array<long, 3>>, double> seen;
   std::map<std::array<long, 3>, double>                 anyRegion;
@@ -111,7 +102,7 @@ TEST_P(ContinuousOfDegree, IsTheNearestContinuousDensity)
   const int                     degree = GetParam();
   const MeshArrays              before = RandomDensity(degree, 5);
   MeshArrays                    after = before;
-  const ContinuousDensityReport report = MakeDensityContinuous(after, OneByOne, 1e-11);
+  const ContinuousDensityReport report = MakeDensityContinuous(after, bone::Execution(), 1e-11);
   EXPECT_LE(report.residual, 1e-11);
   // What is left is orthogonal to every continuous spline: here to random ones.
   const SharedCoefficients               shared = ShareCoefficients(before);
@@ -133,9 +124,9 @@ TEST_P(ContinuousOfDegree, IsTheNearestContinuousDensity)
 TEST_P(ContinuousOfDegree, KeepsADensityThatIsContinuousAlready)
 {
   MeshArrays mesh = RandomDensity(GetParam(), 7);
-  MakeDensityContinuous(mesh, OneByOne, 1e-11);
+  MakeDensityContinuous(mesh, bone::Execution(), 1e-11);
   MeshArrays again = mesh;
-  MakeDensityContinuous(again, OneByOne, 1e-11);
+  MakeDensityContinuous(again, bone::Execution(), 1e-11);
   for (std::size_t c = 0; c < mesh.coefficients.size(); ++c)
   {
     ASSERT_NEAR(again.coefficients[c], mesh.coefficients[c], 1e-5);
@@ -159,11 +150,11 @@ TEST(ContinuousDensity, RefusesMixedDegreesDegreeZeroAndInvertedCells)
 {
   MeshArrays mesh = RandomDensity(2, 1);
   mesh.degree[3] = 1;
-  EXPECT_THROW(MakeDensityContinuous(mesh, OneByOne), std::invalid_argument);
+  EXPECT_THROW(MakeDensityContinuous(mesh, bone::Execution()), std::invalid_argument);
   mesh = RandomDensity(0, 1);
-  EXPECT_THROW(MakeDensityContinuous(mesh, OneByOne), std::invalid_argument);
+  EXPECT_THROW(MakeDensityContinuous(mesh, bone::Execution()), std::invalid_argument);
   mesh = RandomDensity(1, 1);
   std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
-  EXPECT_THROW(MakeDensityContinuous(mesh, OneByOne), std::invalid_argument);
+  EXPECT_THROW(MakeDensityContinuous(mesh, bone::Execution()), std::invalid_argument);
 }
 } // namespace

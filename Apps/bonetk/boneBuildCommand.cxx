@@ -7,7 +7,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneBernstein.h"
-#include "boneBoneImage.h"
+#include "boneLabelCrop.h"
 #include "boneBuildEvaluation.h"
 #include "boneContourIO.h"
 #include "boneGeometryIO.h"

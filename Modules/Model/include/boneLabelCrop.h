@@ -1,15 +1,15 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#ifndef boneBoneImage_h
-#define boneBoneImage_h
+#ifndef boneLabelCrop_h
+#define boneLabelCrop_h
 
 #include "boneImageIO.h"
 #include "boneTypes.h"
 
 namespace bone
 {
-/** \defgroup BoneImage A CT and its label map, cut down to one bone
+/** \defgroup LabelCrop A CT and its label map, cut down to one bone
  * Label 0 stands for every value but 0.
  * \{ */
 

@@ -1,0 +1,38 @@
+# Two precompiled headers for the whole tree: one for the modules' libraries (position-independent code), one with
+# GoogleTest for the test programs (position-independent executables, which GCC does not let share the first).
+# Nine tenths of what a source of BoneTK is compiled from are ITK's image, Eigen and the standard library.
+option(BONETK_PRECOMPILE "Precompile the headers that most sources include" ON)
+
+set(BONETK_PRECOMPILED_HEADERS
+    <algorithm> <array> <cmath> <cstddef> <functional> <limits> <map> <memory> <ostream> <sstream> <stdexcept> <string>
+    <utility> <vector> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <itkImage.h> <itkPointSet.h> <itkProcessObject.h>)
+
+function(bonetk_precompiled_target target)
+  bonetk_compile_settings(${target})
+  target_include_directories(${target} SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+  target_link_libraries(${target} PRIVATE Eigen3::Eigen Threads::Threads)
+  target_precompile_headers(${target} PRIVATE ${BONETK_PRECOMPILED_HEADERS} ${ARGN})
+endfunction()
+
+if(BONETK_PRECOMPILE)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cxx CONTENT "int\nmain()\n{}\n")
+  add_library(bonePrecompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cxx)
+  bonetk_precompiled_target(bonePrecompiled)
+  if(BUILD_TESTING)
+    add_executable(bonePrecompiledTests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cxx)
+    target_link_libraries(bonePrecompiledTests PRIVATE GTest::gtest GTest::gmock)
+    bonetk_precompiled_target(bonePrecompiledTests <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+endif()
+
+function(bonetk_precompile target)
+  if(BONETK_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM bonePrecompiled)
+  endif()
+endfunction()
+
+function(bonetk_precompile_tests target)
+  if(BONETK_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM bonePrecompiledTests)
+  endif()
+endfunction()
