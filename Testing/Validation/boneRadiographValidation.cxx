@@ -16,31 +16,21 @@
 #include "boneVoxelDRRImageFilter.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <iostream>
-#include <thread>
 
 namespace
 {
 using namespace bone;
 
-void
-OnTwoThreads(std::size_t count, const std::function<void(std::size_t)> & body)
+/** Loops on two threads; made after main() has set ITK's default. */
+const Execution &
+TwoThreads()
 {
-  std::atomic<std::size_t> next{ 0 };
-  const auto               work = [&]() {
-    for (std::size_t i = next++; i < count; i = next++)
-    {
-      body(i);
-    }
-  };
-  std::thread other(work);
-  work();
-  other.join();
+  static const Execution execution;
+  return execution;
 }
-const LoopRunner loops{ OnTwoThreads, OnTwoThreads };
 
 void
 Time(const std::string & name, int repetitions, const std::function<void()> & work)
@@ -80,11 +70,11 @@ TimeModel(const std::string & name, const std::string & path, const XRayGeometry
   const MeshArrays   mesh = ReadDensityMesh(path)->GetArrays();
   std::vector<float> image(Pixels(view));
   // As one of many radiographs of a mesh, and as the only one.
-  const ProjectionModel model(mesh.points, mesh, {}, loops.prepare);
-  Time("model " + name, 600, [&]() { ProjectMesh(model, { view }, loops, { image.data() }); });
-  Time("once " + name, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, loops, image.data()); });
+  const ProjectionModel model(mesh.points, mesh, {}, TwoThreads());
+  Time("model " + name, 600, [&]() { ProjectMesh(model, { view }, TwoThreads(), { image.data() }); });
+  Time("once " + name, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, TwoThreads(), image.data()); });
   std::vector<std::int32_t> passed(image.size());
-  WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());
+  WalkMesh(mesh.points, mesh, view, {}, TwoThreads(), image.data(), passed.data());
   double intervals = 0;
   for (std::int32_t cells : passed)
   {
@@ -111,7 +101,7 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
     pointers.push_back(&images[i]);
   }
   Time(
-    "derivatives " + path, 15, [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers); });
+    "derivatives " + path, 15, [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers); });
 }
 
 /** ITK's ray caster turns no axes: points are turned about the image's origin. It counts what is above 0. */
@@ -149,7 +139,7 @@ TimeRayCaster(const CTImage * ct, const XRayGeometry * geometry, const std::vect
       }
     }
   };
-  Time("itk", 2, [&]() { OnTwoThreads(16, cast); });
+  Time("itk", 2, [&]() { TwoThreads().For(16, cast); });
   double difference = 0, size = 0;
   for (std::size_t i = 0; i < image.size(); ++i)
   {
@@ -168,6 +158,7 @@ main(int argc, char * argv[])
     std::cerr << "usage: boneRadiographValidation CT GEOMETRY.json MODEL.vtu...\n";
     return 2;
   }
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(2);
   try
   {
     const auto ct = ReadCT(argv[1]);

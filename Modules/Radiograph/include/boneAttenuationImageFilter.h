@@ -23,8 +23,7 @@ struct AttenuationFunctor
   bool
   operator==(const AttenuationFunctor & other) const
   {
-    return curve.conversion == other.curve.conversion && curve.water == other.curve.water &&
-           curve.boneSlope == other.curve.boneSlope && curve.table == other.curve.table;
+    return curve == other.curve;
   }
   bool
   operator!=(const AttenuationFunctor & other) const
@@ -34,10 +33,12 @@ struct AttenuationFunctor
 };
 
 /** \class AttenuationImageFilter
- * \brief A CT in HU as an image of attenuation per mm: fit a model to that for radiographs with a curve that is no line
- * (Bilinear, Table).
+ * \brief Converts a CT in HU to an image of attenuation per mm.
  *
- * Parameter: Curve (default: none; the input goes through). Its table must hold points of rising HU. */
+ * Fit a model to the result for radiographs whose conversion is not linear (Bilinear, Table).
+ *
+ * Parameters: \ref RadiographParameters, and AttenuationTable, which HUToAttenuation::Table needs. Without conversion
+ * the input goes through. */
 template <typename TInputImage, typename TOutputImage = itk::Image<float, 3>>
 class AttenuationImageFilter
   : public itk::UnaryFunctorImageFilter<
@@ -55,30 +56,40 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(AttenuationImageFilter, UnaryFunctorImageFilter);
 
-  void
-  SetCurve(const AttenuationCurve & curve)
-  {
-    this->SetFunctor(FunctorType{ curve });
-  }
-  const AttenuationCurve &
-  GetCurve() const
-  {
-    return this->GetFunctor().curve;
-  }
+  BONE_FILTER_PARAMETERS(RadiographParameters, BONE_RADIOGRAPH_PARAMETERS)
+  itkSetMacro(AttenuationTable, std::vector<AttenuationPoint>);
+  itkGetConstReferenceMacro(AttenuationTable, std::vector<AttenuationPoint>);
 
 protected:
   AttenuationImageFilter() = default;
   ~AttenuationImageFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override
+  VerifyPreconditions() const override
   {
     Superclass::VerifyPreconditions();
-    if (GetCurve().conversion == HUToAttenuation::Table && GetCurve().table.empty())
+    this->VerifyParameters();
+    const std::string obstacle = AttenuationCurve{ m_Parameters, m_AttenuationTable }.FindObstacle();
+    if (!obstacle.empty())
     {
-      itkExceptionMacro("The curve's table is empty.");
+      itkExceptionMacro(<< obstacle);
     }
   }
+  void
+  BeforeThreadedGenerateData() override
+  {
+    this->GetFunctor().curve = AttenuationCurve{ m_Parameters, m_AttenuationTable };
+  }
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override
+  {
+    Superclass::PrintSelf(os, indent);
+    PrintParameters(os, indent, m_Parameters);
+    os << indent << "AttenuationTable: " << m_AttenuationTable << '\n';
+  }
+
+private:
+  std::vector<AttenuationPoint> m_AttenuationTable;
 };
 } // namespace bone
 

@@ -4,11 +4,10 @@
 #ifndef boneDRRAdjointFilter_h
 #define boneDRRAdjointFilter_h
 
-#include "boneDRRImageFilter.h"
+#include "boneDRRParameters.h"
 #include "boneMeshDerivatives.h"
+#include "boneMeshFilter.h"
 
-#include <itkMultiThreaderBase.h>
-#include <itkProcessObject.h>
 #include <itkSimpleDataObjectDecorator.h>
 
 namespace bone
@@ -16,45 +15,33 @@ namespace bone
 /** \class DRRAdjointFilter
  * \brief From radiographs back to a density model: the transpose of DRRImageFilter.
  *
- * For f = sum over the pixels of Image * radiograph: with the derivative of any function of the radiograph as Image,
- * the outputs are that function's derivatives by all of the model.
+ * The outputs are the derivatives of f = sum over the pixels of Image * radiograph. Where Image is the derivative of
+ * any function of the radiograph, they are the derivatives of that function with respect to the model.
  *
  * Inputs: the mesh (primary); for each view an "Image" of columns x rows pixels (third size 1 or none; its place in
- * space is not looked at) and a "Geometry" (SetImage(i, ...), SetGeometry(i, ...); without i view 0), over which the
- * outputs are summed. Outputs: the mesh with df/dc in place of its density coefficients c (quantity unknown), and
+ * space is ignored) and a "Geometry" (SetImage(i, ...), SetGeometry(i, ...); without i view 0). The outputs are sums
+ * over the views. Outputs: the mesh with df/dc in place of its density coefficients c (quantity unknown), and
  * GetPointGradient(), df/dx of each point, per mm.
  *
- * Parameters as DRRImageFilter's: MinimumRegion, MaximumRegion (what is not selected has derivative 0), HUToAttenuation
- * (None or WaterScaled) and WaterAttenuation.
+ * Parameters: \ref DRRAdjointParameters, as DRRImageFilter's. Tetrahedra that are not selected have derivative 0.
+ * HUToAttenuation must be None or WaterScaled.
  *
  * Refused: what DRRImageFilter refuses; an image of another size than its view, or with values that are not finite. */
 template <typename TMesh = DensityMesh<double>, typename TImage = itk::Image<float, 3>>
-class DRRAdjointFilter : public itk::ProcessObject
+class DRRAdjointFilter : public MeshFilter<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(DRRAdjointFilter);
   using Self = DRRAdjointFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshFilter<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(DRRAdjointFilter, itk::ProcessObject);
+  itkTypeMacro(DRRAdjointFilter, MeshFilter);
 
-  using MeshType = TMesh;
   using ImageType = TImage;
   using PointGradientType = itk::SimpleDataObjectDecorator<std::vector<Vector3>>;
 
-  using Superclass::SetInput;
-  void
-  SetInput(const TMesh * mesh)
-  {
-    this->SetNthInput(0, const_cast<TMesh *>(mesh));
-  }
-  const TMesh *
-  GetInput() const
-  {
-    return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryInput());
-  }
   void
   SetImage(const TImage * image)
   {
@@ -63,12 +50,12 @@ public:
   void
   SetImage(unsigned int view, const TImage * image)
   {
-    this->Superclass::SetInput(Name("Image", view), const_cast<TImage *>(image));
+    this->itk::ProcessObject::SetInput(Name("Image", view), const_cast<TImage *>(image));
   }
   const TImage *
   GetImage(unsigned int view = 0) const
   {
-    return itkDynamicCastInDebugMode<const TImage *>(this->Superclass::GetInput(Name("Image", view)));
+    return itkDynamicCastInDebugMode<const TImage *>(this->itk::ProcessObject::GetInput(Name("Image", view)));
   }
   void
   SetGeometry(const XRayGeometry * geometry)
@@ -78,47 +65,28 @@ public:
   void
   SetGeometry(unsigned int view, const XRayGeometry * geometry)
   {
-    this->Superclass::SetInput(Name("Geometry", view), const_cast<XRayGeometry *>(geometry));
+    this->itk::ProcessObject::SetInput(Name("Geometry", view), const_cast<XRayGeometry *>(geometry));
   }
   const XRayGeometry *
   GetGeometry(unsigned int view = 0) const
   {
-    return itkDynamicCastInDebugMode<const XRayGeometry *>(this->Superclass::GetInput(Name("Geometry", view)));
+    return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput(Name("Geometry", view)));
   }
 
-  TMesh *
-  GetOutput()
-  {
-    return itkDynamicCastInDebugMode<TMesh *>(this->GetPrimaryOutput());
-  }
   const std::vector<Vector3> &
   GetPointGradient() const
   {
-    return static_cast<const PointGradientType *>(this->Superclass::GetOutput("PointGradient"))->Get();
+    return static_cast<const PointGradientType *>(this->itk::ProcessObject::GetOutput("PointGradient"))->Get();
   }
 
-  itkSetMacro(MinimumRegion, int);
-  itkGetConstMacro(MinimumRegion, int);
-  itkSetMacro(MaximumRegion, int);
-  itkGetConstMacro(MaximumRegion, int);
-  itkSetMacro(HUToAttenuation, HUToAttenuation);
-  itkGetConstMacro(HUToAttenuation, HUToAttenuation);
-  itkSetMacro(WaterAttenuation, double);
-  itkGetConstMacro(WaterAttenuation, double);
-
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType) override
-  {
-    return TMesh::New().GetPointer();
-  }
+  BONE_FILTER_PARAMETERS(DRRAdjointParameters, BONE_DRR_ADJOINT_PARAMETERS)
 
 protected:
   DRRAdjointFilter();
   ~DRRAdjointFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateData() override;
   void
@@ -130,14 +98,9 @@ private:
   {
     return view == 0 ? what : what + std::to_string(view);
   }
-  /** The pixels of a view's image; throws where they cannot be those. */
+  /** The pixels of a view's image. Throws where the image does not fit the view or has a value that is not finite. */
   std::vector<float>
   GetWeights(unsigned int view) const;
-
-  int             m_MinimumRegion{ std::numeric_limits<int>::min() };
-  int             m_MaximumRegion{ std::numeric_limits<int>::max() };
-  HUToAttenuation m_HUToAttenuation{ HUToAttenuation::None };
-  double          m_WaterAttenuation{ WaterAttenuationAt60keV };
 };
 } // namespace bone
 

@@ -16,23 +16,17 @@ namespace bone
 template <typename TMesh, typename TImage>
 DRRAdjointFilter<TMesh, TImage>::DRRAdjointFilter()
 {
-  this->SetPrimaryInputName("Mesh");
   this->AddRequiredInputName("Image");
   this->AddRequiredInputName("Geometry");
-  this->SetNumberOfRequiredOutputs(1);
-  this->SetNthOutput(0, this->MakeOutput(0));
-  this->Superclass::SetOutput("PointGradient", PointGradientType::New());
+  this->itk::ProcessObject::SetOutput("PointGradient", PointGradientType::New());
 }
 
 template <typename TMesh, typename TImage>
 void
-DRRAdjointFilter<TMesh, TImage>::VerifyPreconditions() ITKv5_CONST
+DRRAdjointFilter<TMesh, TImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
-  if (!(m_WaterAttenuation > 0) || !std::isfinite(m_WaterAttenuation))
-  {
-    itkExceptionMacro("WaterAttenuation is " << m_WaterAttenuation << " per mm; it must be positive.");
-  }
+  this->VerifyParameters();
 }
 
 template <typename TMesh, typename TImage>
@@ -71,30 +65,31 @@ template <typename TMesh, typename TImage>
 void
 DRRAdjointFilter<TMesh, TImage>::GenerateData()
 {
-  MeshArrays                  arrays = this->GetInput()->GetArrays();
-  const auto                  line = AttenuationCurve{ m_HUToAttenuation, m_WaterAttenuation, 0.0, {} }.Line();
-  const MeshRadiographOptions options{ m_MinimumRegion, m_MaximumRegion, line.scale, line.offset };
-  const std::string           obstacle = FindObstacle(arrays.points, arrays, options, m_HUToAttenuation);
+  MeshArrays                     arrays = this->GetInput()->GetArrays();
+  const DRRAdjointParameters &   p = this->m_Parameters;
+  const MeshRadiographParameters parameters =
+    MakeMeshRadiographParameters(p.minimumRegion, p.maximumRegion, p.huToAttenuation, p.waterAttenuation);
+  const std::string obstacle = FindObstacle(arrays.points, arrays, parameters, p.huToAttenuation);
   if (!obstacle.empty())
   {
     itkExceptionMacro(<< obstacle);
   }
-  const auto loop = [this](std::size_t count, const std::function<void(std::size_t)> & body) {
-    this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
-    this->GetMultiThreader()->ParallelizeArray(
-      0, count, [&](itk::SizeValueType i) { body(i); }, nullptr);
-  };
+  const Execution execution(this);
+  unsigned int    views = 1;
+  while (this->GetGeometry(views) != nullptr || this->GetImage(views) != nullptr)
+  {
+    ++views;
+  }
   std::vector<double>  sum(arrays.coefficients.size(), 0.0), coefficients(sum.size());
   std::vector<Vector3> gradient(arrays.points.size(), Vector3(Vector3::Zero())), points(gradient.size());
-  for (unsigned int view = 0; view == 0 || this->GetGeometry(view) != nullptr || this->GetImage(view) != nullptr;
-       ++view)
+  for (unsigned int view = 0; view < views; ++view)
   {
     const std::vector<float> weights = this->GetWeights(view);
     BackprojectToMesh(arrays.points,
                       arrays,
                       this->GetGeometry(view)->GetView(),
-                      options,
-                      { loop, loop },
+                      parameters,
+                      execution.Part(static_cast<double>(view) / views, (view + 1.0) / views),
                       weights.data(),
                       coefficients.data(),
                       points.data());
@@ -103,8 +98,8 @@ DRRAdjointFilter<TMesh, TImage>::GenerateData()
   }
   arrays.coefficients = std::move(sum);
   arrays.quantity = DensityQuantity::Unknown;
-  this->GetOutput()->SetArrays(std::move(arrays));
-  static_cast<PointGradientType *>(this->Superclass::GetOutput("PointGradient"))->Set(gradient);
+  this->SetResult(std::move(arrays));
+  static_cast<PointGradientType *>(this->itk::ProcessObject::GetOutput("PointGradient"))->Set(gradient);
   this->UpdateProgress(1.0f);
 }
 
@@ -113,10 +108,7 @@ void
 DRRAdjointFilter<TMesh, TImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "MinimumRegion: " << m_MinimumRegion << '\n';
-  os << indent << "MaximumRegion: " << m_MaximumRegion << '\n';
-  os << indent << "HUToAttenuation: " << m_HUToAttenuation << '\n';
-  os << indent << "WaterAttenuation: " << m_WaterAttenuation << '\n';
+  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone
 

@@ -57,9 +57,11 @@ protected:
     return 0;
   }
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                   const Execution &                       execution,
+                   const std::vector<float *> &            integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 

@@ -28,7 +28,7 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::SetModes(RadiographModes modes)
 
 template <typename TMesh, typename TOutputImage>
 void
-DRRDerivativeImageFilter<TMesh, TOutputImage>::VerifyPreconditions() ITKv5_CONST
+DRRDerivativeImageFilter<TMesh, TOutputImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
   if (this->GetGeometry(1) != nullptr || this->GetNumberOfIndexedOutputs() != 1 + m_Modes.Count())
@@ -37,13 +37,14 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::VerifyPreconditions() ITKv5_CONST
   }
   if (this->GetMethod() != DRRMethod::Projection)
   {
-    itkExceptionMacro("Method is " << this->GetMethod() << ": derivatives need Projection.");
+    itkExceptionMacro("Method is " << ParameterText(this->GetMethod()) << ": derivatives need projection.");
   }
 }
 
 template <typename TMesh, typename TOutputImage>
 void
 DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                                                                const Execution &                       execution,
                                                                 const std::vector<float *> &            integrals)
 {
   const std::vector<Vector3> points = this->GetVerifiedPoints();
@@ -68,7 +69,7 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vecto
                                         << cells.coefficients.size() << ", one a coefficient, all finite.");
     }
   }
-  ProjectMeshDerivatives(points, cells, views[0], this->GetOptions(), m_Modes, this->MakeLoops(), integrals);
+  ProjectMeshDerivatives(points, cells, views[0], this->GetMeshRadiographParameters(), m_Modes, execution, integrals);
 }
 
 template <typename TMesh, typename TOutputImage>

@@ -4,6 +4,7 @@
 #ifndef boneDRRImageFilter_h
 #define boneDRRImageFilter_h
 
+#include "boneDRRParameters.h"
 #include "boneDensityMesh.h"
 #include "boneProjectionModel.h"
 #include "boneRadiographSource.h"
@@ -12,19 +13,6 @@
 
 namespace bone
 {
-/** How DRRImageFilter integrates; both give the same image within about 1e-6 of its largest value. */
-enum class DRRMethod : int
-{
-  Projection = 0, ///< tetrahedra projected onto the detector: fast
-  Walk = 1        ///< rays walked from face neighbour to face neighbour (paper 5): slow, in double precision
-};
-
-inline std::ostream &
-operator<<(std::ostream & os, DRRMethod method)
-{
-  return os << (method == DRRMethod::Projection ? "Projection" : "Walk");
-}
-
 /** The points of a mesh in double precision. */
 template <typename TMesh>
 std::vector<Vector3>
@@ -44,17 +32,16 @@ CopyPoints(const TMesh & mesh)
  *
  * Every pixel is the exact line integral of the piecewise polynomial density between source and pixel. Inputs: the mesh
  * (primary), with a density of any degrees 0..8, convex or not; "Geometry", see RadiographSource, which also describes
- * the output. The source may lie inside the mesh; what lies beyond the detector does not count.
+ * the output. The source may lie inside the mesh. Bone beyond the detector does not count.
  *
- * Parameters: Method; MinimumRegion and MaximumRegion, the regions that count (default all; a mesh without regions
- * cannot be restricted); HUToAttenuation and WaterAttenuation. Without conversion a density below 0 HU (fat, marrow)
- * counts negative. WaterScaled is linear, so that the density is not cut off below -1000 HU, and needs a density in HU
- * (or of unknown quantity).
+ * Parameters: \ref DRRParameters, HUToAttenuation (None or WaterScaled) and WaterAttenuation. A mesh without regions
+ * cannot be restricted to some. Without conversion a density below 0 HU (fat, marrow) counts negative. WaterScaled is
+ * linear, so that the density is not cut off below -1000 HU, and needs a density in HU (or of unknown quantity).
  *
  * Refused: a mesh without density, with coefficients or points that are not finite,
  * or without tetrahedra.
  *
- * What does not depend on the view is kept from one update to the next while the mesh and the options are the same:
+ * The ProjectionModel is kept from one update to the next while the mesh and the parameters are the same:
  * about 200 bytes a tetrahedron of degree 3; further views then take some three quarters of the time.
  *
  * \sa MeshRadiograph for the methods, VoxelDRRImageFilter for a CT */
@@ -84,12 +71,8 @@ public:
     return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryInput());
   }
 
-  itkSetMacro(Method, DRRMethod);
-  itkGetConstMacro(Method, DRRMethod);
-  itkSetMacro(MinimumRegion, int);
-  itkGetConstMacro(MinimumRegion, int);
-  itkSetMacro(MaximumRegion, int);
-  itkGetConstMacro(MaximumRegion, int);
+  using Superclass::SetParameters;
+  BONE_FILTER_PARAMETERS(DRRParameters, BONE_DRR_PARAMETERS)
 
   /** Mean number of tetrahedra on the rays that meet any, known after an update with the method Walk, else 0. */
   itkGetConstMacro(MeanCellsPassed, double);
@@ -98,27 +81,28 @@ protected:
   DRRImageFilter();
   ~DRRImageFilter() override = default;
 
-  MeshRadiographOptions
-  GetOptions() const;
-  /** The mesh as ProjectMesh takes it, made anew where mesh or options have changed. */
+  MeshRadiographParameters
+  GetMeshRadiographParameters() const;
+  /** The mesh as ProjectMesh takes it, made anew where mesh or parameters have changed. */
   const ProjectionModel &
-  GetModel(const ParallelFor & parallelFor);
+  GetModel(const Execution & execution);
   /** The mesh's points; throws where no radiograph can be made of it. */
   std::vector<Vector3>
   GetVerifiedPoints() const;
 
   void
-  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
+  VerifyPreconditions() const override;
+  void
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                   const Execution &                       execution,
+                   const std::vector<float *> &            integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  DRRMethod m_Method{ DRRMethod::Projection };
-  int       m_MinimumRegion{ std::numeric_limits<int>::min() };
-  int       m_MaximumRegion{ std::numeric_limits<int>::max() };
-  double    m_MeanCellsPassed{ 0.0 };
+  double m_MeanCellsPassed{ 0.0 };
 
-  /** What GetModel keeps, and what of. */
+  /** The model that GetModel keeps, and the mesh and conversion of which it was made. */
   struct Kept
   {
     const TMesh *                          mesh{ nullptr };

@@ -15,11 +15,19 @@ DRRImageFilter<TMesh, TOutputImage>::DRRImageFilter()
 }
 
 template <typename TMesh, typename TOutputImage>
-MeshRadiographOptions
-DRRImageFilter<TMesh, TOutputImage>::GetOptions() const
+void
+DRRImageFilter<TMesh, TOutputImage>::VerifyPreconditions() const
 {
-  const auto conversion = this->GetCurve().Line();
-  return { m_MinimumRegion, m_MaximumRegion, conversion.scale, conversion.offset };
+  Superclass::VerifyPreconditions();
+  this->VerifyParameters();
+}
+
+template <typename TMesh, typename TOutputImage>
+MeshRadiographParameters
+DRRImageFilter<TMesh, TOutputImage>::GetMeshRadiographParameters() const
+{
+  return MakeMeshRadiographParameters(
+    m_Parameters.minimumRegion, m_Parameters.maximumRegion, this->GetHUToAttenuation(), this->GetWaterAttenuation());
 }
 
 template <typename TMesh, typename TOutputImage>
@@ -28,7 +36,8 @@ DRRImageFilter<TMesh, TOutputImage>::GetVerifiedPoints() const
 {
   const TMesh *        mesh = this->GetInput();
   std::vector<Vector3> points = CopyPoints(*mesh);
-  const std::string    obstacle = FindObstacle(points, mesh->GetCells(), GetOptions(), this->GetHUToAttenuation());
+  const std::string    obstacle =
+    FindObstacle(points, mesh->GetCells(), GetMeshRadiographParameters(), this->GetHUToAttenuation());
   if (!obstacle.empty())
   {
     itkExceptionMacro(<< obstacle);
@@ -38,17 +47,17 @@ DRRImageFilter<TMesh, TOutputImage>::GetVerifiedPoints() const
 
 template <typename TMesh, typename TOutputImage>
 const ProjectionModel &
-DRRImageFilter<TMesh, TOutputImage>::GetModel(const ParallelFor & parallelFor)
+DRRImageFilter<TMesh, TOutputImage>::GetModel(const Execution & execution)
 {
-  const TMesh *               mesh = this->GetInput();
-  const MeshRadiographOptions options = GetOptions();
+  const TMesh *                  mesh = this->GetInput();
+  const MeshRadiographParameters parameters = GetMeshRadiographParameters();
   if (m_Kept.model == nullptr || m_Kept.mesh != mesh || m_Kept.time != mesh->GetMTime() ||
-      m_Kept.conversion != this->GetHUToAttenuation() || m_Kept.model->Options() != options)
+      m_Kept.conversion != this->GetHUToAttenuation() || m_Kept.model->Parameters() != parameters)
   {
     m_Kept.model.reset();
     m_Kept.mesh = nullptr;
     m_Kept.points = GetVerifiedPoints();
-    m_Kept.model = std::make_unique<const ProjectionModel>(m_Kept.points, mesh->GetCells(), options, parallelFor);
+    m_Kept.model = std::make_unique<const ProjectionModel>(m_Kept.points, mesh->GetCells(), parameters, execution);
     m_Kept.mesh = mesh;
     m_Kept.time = mesh->GetMTime();
     m_Kept.conversion = this->GetHUToAttenuation();
@@ -59,24 +68,26 @@ DRRImageFilter<TMesh, TOutputImage>::GetModel(const ParallelFor & parallelFor)
 template <typename TMesh, typename TOutputImage>
 void
 DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                                                      const Execution &                       execution,
                                                       const std::vector<float *> &            integrals)
 {
-  const LoopRunner loops = this->MakeLoops();
   m_MeanCellsPassed = 0.0;
-  if (m_Method == DRRMethod::Projection)
+  if (m_Parameters.method == DRRMethod::Projection)
   {
-    ProjectMesh(GetModel(loops.prepare), views, loops, integrals);
+    ProjectMesh(GetModel(execution.Silent()), views, execution, integrals);
     return;
   }
-  const TMesh *               mesh = this->GetInput();
-  const std::vector<Vector3>  points = GetVerifiedPoints();
-  const MeshRadiographOptions options = GetOptions();
-  double                      sum = 0.0;
-  std::size_t                 hit = 0;
+  const TMesh *                  mesh = this->GetInput();
+  const std::vector<Vector3>     points = GetVerifiedPoints();
+  const MeshRadiographParameters parameters = GetMeshRadiographParameters();
+  const auto                     count = static_cast<double>(views.size());
+  double                         sum = 0.0;
+  std::size_t                    hit = 0;
   for (std::size_t i = 0; i < views.size(); ++i)
   {
     std::vector<std::int32_t> passed(static_cast<std::size_t>(views[i].size[0]) * views[i].size[1]);
-    WalkMesh(points, mesh->GetCells(), views[i], options, loops, integrals[i], passed.data());
+    const Execution           part = execution.Part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+    WalkMesh(points, mesh->GetCells(), views[i], parameters, part, integrals[i], passed.data());
     for (std::int32_t cells : passed)
     {
       sum += cells;
@@ -91,9 +102,7 @@ void
 DRRImageFilter<TMesh, TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "Method: " << m_Method << '\n';
-  os << indent << "MinimumRegion: " << m_MinimumRegion << '\n';
-  os << indent << "MaximumRegion: " << m_MaximumRegion << '\n';
+  PrintParameters(os, indent, m_Parameters);
   os << indent << "MeanCellsPassed: " << m_MeanCellsPassed << '\n';
 }
 } // namespace bone

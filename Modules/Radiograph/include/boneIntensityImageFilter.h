@@ -4,6 +4,8 @@
 #ifndef boneIntensityImageFilter_h
 #define boneIntensityImageFilter_h
 
+#include "boneDetectorParameters.h"
+
 #include <itkUnaryFunctorImageFilter.h>
 
 #include <cmath>
@@ -14,7 +16,7 @@ namespace bone
 template <typename TInput, typename TOutput>
 struct IntensityFunctor
 {
-  double incident{ 1.0 };
+  double incident{ IntensityParameters().incidentIntensity };
   TOutput
   operator()(const TInput & integral) const
   {
@@ -33,10 +35,11 @@ struct IntensityFunctor
 };
 
 /** \class IntensityImageFilter
- * \brief What a detector sees: Beer and Lambert's I = I0 exp(-integral of mu), for one energy and without scatter.
+ * \brief Intensity at the detector by Beer and Lambert's law, I = I0 exp(-integral of mu), for one energy and without
+ * scatter.
  *
- * Input: a radiograph of line integrals of attenuation (HUToAttenuation not None). Parameter: IncidentIntensity I0
- * (default 1), for example the photons per pixel that NoiseImageFilter then draws from. */
+ * Input: a radiograph of line integrals of attenuation (HUToAttenuation not None). Parameter: IncidentIntensity I0,
+ * for example the photons per pixel that NoiseImageFilter then draws from. */
 template <typename TInputImage, typename TOutputImage = TInputImage>
 class IntensityImageFilter
   : public itk::UnaryFunctorImageFilter<
@@ -54,29 +57,28 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(IntensityImageFilter, UnaryFunctorImageFilter);
 
-  void
-  SetIncidentIntensity(double intensity)
-  {
-    this->SetFunctor(FunctorType{ intensity });
-  }
-  double
-  GetIncidentIntensity() const
-  {
-    return this->GetFunctor().incident;
-  }
+  BONE_FILTER_PARAMETERS(IntensityParameters, BONE_INTENSITY_PARAMETERS)
 
 protected:
   IntensityImageFilter() = default;
   ~IntensityImageFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override
+  VerifyPreconditions() const override
   {
     Superclass::VerifyPreconditions();
-    if (!(GetIncidentIntensity() > 0) || !std::isfinite(GetIncidentIntensity()))
-    {
-      itkExceptionMacro("IncidentIntensity is " << GetIncidentIntensity() << "; it must be positive.");
-    }
+    this->VerifyParameters();
+  }
+  void
+  BeforeThreadedGenerateData() override
+  {
+    this->GetFunctor().incident = m_Parameters.incidentIntensity;
+  }
+  void
+  PrintSelf(std::ostream & os, itk::Indent indent) const override
+  {
+    Superclass::PrintSelf(os, indent);
+    PrintParameters(os, indent, m_Parameters);
   }
 };
 } // namespace bone

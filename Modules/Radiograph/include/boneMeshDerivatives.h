@@ -36,28 +36,28 @@ struct RadiographModes
  * and shape mode.
  */
 void
-ProjectMeshDerivatives(const std::vector<Vector3> &  points,
-                       const MeshArrays &            cells,
-                       const XRayGeometry::View &    view,
-                       const MeshRadiographOptions & options,
-                       const RadiographModes &       modes,
-                       const LoopRunner &            loops,
-                       const std::vector<float *> &  images);
+ProjectMeshDerivatives(const std::vector<Vector3> &     points,
+                       const MeshArrays &               cells,
+                       const XRayGeometry::View &       view,
+                       const MeshRadiographParameters & parameters,
+                       const RadiographModes &          modes,
+                       const Execution &                execution,
+                       const std::vector<float *> &     images);
 
 /** \brief The adjoint: for f = sum over the pixels of image * ProjectMesh(...), the derivatives of f.
  *
  * `coefficients` receives df / dc for each of MeshArrays::coefficients (0 for cells not selected; the projection being
  * linear, this is the transpose of the matrix from coefficients to pixels), `positions` (#points, or null) df / dx for
- * each point, per mm. The result does not depend on how `loops` run. */
+ * each point, per mm. The result does not depend on the number of threads. */
 void
-BackprojectToMesh(const std::vector<Vector3> &  points,
-                  const MeshArrays &            cells,
-                  const XRayGeometry::View &    view,
-                  const MeshRadiographOptions & options,
-                  const LoopRunner &            loops,
-                  const float *                 image,
-                  double *                      coefficients,
-                  Vector3 *                     positions);
+BackprojectToMesh(const std::vector<Vector3> &     points,
+                  const MeshArrays &               cells,
+                  const XRayGeometry::View &       view,
+                  const MeshRadiographParameters & parameters,
+                  const Execution &                execution,
+                  const float *                    image,
+                  double *                         coefficients,
+                  Vector3 *                        positions);
 } // namespace bone
 
 #endif

@@ -4,55 +4,35 @@
 #ifndef boneMeshRadiograph_h
 #define boneMeshRadiograph_h
 
-#include "boneAttenuation.h"
-#include "boneLoopRunner.h"
+#include "boneDRRParameters.h"
+#include "boneExecution.h"
 #include "boneMeshArrays.h"
 #include "boneXRayGeometry.h"
 
 #include <cstdint>
-#include <limits>
 #include <string>
 
 namespace bone
 {
-/** What is integrated: scale * density + offset, in the tetrahedra of region minimumRegion..maximumRegion (all where
- * the mesh has no regions). */
-struct MeshRadiographOptions
-{
-  int    minimumRegion{ std::numeric_limits<int>::min() };
-  int    maximumRegion{ std::numeric_limits<int>::max() };
-  double scale{ 1.0 };
-  double offset{ 0.0 };
-  bool   portable{ false }; ///< ProjectMesh: leave the processor's newer instructions alone
-
-  friend bool
-  operator==(const MeshRadiographOptions & a, const MeshRadiographOptions & b)
-  {
-    return a.minimumRegion == b.minimumRegion && a.maximumRegion == b.maximumRegion && a.scale == b.scale &&
-           a.offset == b.offset && a.portable == b.portable;
-  }
-  friend bool
-  operator!=(const MeshRadiographOptions & a, const MeshRadiographOptions & b)
-  {
-    return !(a == b);
-  }
-};
+/** What a radiograph of these regions integrates where HU are converted as said (None or WaterScaled). */
+MeshRadiographParameters
+MakeMeshRadiographParameters(int minimumRegion, int maximumRegion, HUToAttenuation conversion, double waterAttenuation);
 
 /** Why a radiograph cannot be made of this mesh, its density converted as said (None or WaterScaled), and what to do;
  * empty where it can. */
 std::string
-FindObstacle(const std::vector<Vector3> &  points,
-             const MeshArrays &            cells,
-             const MeshRadiographOptions & options,
-             HUToAttenuation               conversion);
+FindObstacle(const std::vector<Vector3> &     points,
+             const MeshArrays &               cells,
+             const MeshRadiographParameters & parameters,
+             HUToAttenuation                  conversion);
 
 /** \defgroup MeshRadiograph Line integrals through a tetrahedral density model (paper 5)
  *
  * `points` are the mesh's points (mm) and `cells` all the rest (`cells.points` is not looked at); cells must hold a
  * density. `image` receives rows x columns line integrals, row by row, in density units times mm (both are
  * overwritten). Tetrahedra of either orientation count, flat ones do not; the mesh need not be convex, connected or
- * whole. The integral ends at the pixel; a source inside the mesh is allowed. The result does not depend on how `loops`
- * run.
+ * whole. The integral ends at the pixel; a source inside the mesh is allowed. The result does not depend on the number
+ * of threads.
  * \{ */
 
 /** \brief Projects the tetrahedra onto the detector, in any order (Sadowsky, Cohen & Taylor, IEEE
@@ -69,19 +49,20 @@ void
 ProjectMesh(const std::vector<Vector3> &            points,
             const MeshArrays &                      cells,
             const std::vector<XRayGeometry::View> & views,
-            const MeshRadiographOptions &           options,
-            const LoopRunner &                      loops,
+            const MeshRadiographParameters &        parameters,
+            const Execution &                       execution,
             const std::vector<float *> &            images);
 
 inline void
-ProjectMesh(const std::vector<Vector3> &  points,
-            const MeshArrays &            cells,
-            const XRayGeometry::View &    view,
-            const MeshRadiographOptions & options,
-            const LoopRunner &            loops,
-            float *                       image)
+ProjectMesh(const std::vector<Vector3> &     points,
+            const MeshArrays &               cells,
+            const XRayGeometry::View &       view,
+            const MeshRadiographParameters & parameters,
+            const Execution &                execution,
+            float *                          image)
 {
-  ProjectMesh(points, cells, std::vector<XRayGeometry::View>{ view }, options, loops, std::vector<float *>{ image });
+  ProjectMesh(
+    points, cells, std::vector<XRayGeometry::View>{ view }, parameters, execution, std::vector<float *>{ image });
 }
 
 /** \brief Walks each ray from face neighbour to face neighbour, in double precision.
@@ -90,13 +71,13 @@ ProjectMesh(const std::vector<Vector3> &  points,
  * cell of the source. Needs `cells.neighbors`. `cellsPassed` (rows x columns, or null) receives the number of
  * tetrahedra met on each ray, of any region. */
 void
-WalkMesh(const std::vector<Vector3> &  points,
-         const MeshArrays &            cells,
-         const XRayGeometry::View &    view,
-         const MeshRadiographOptions & options,
-         const LoopRunner &            loops,
-         float *                       image,
-         std::int32_t *                cellsPassed);
+WalkMesh(const std::vector<Vector3> &     points,
+         const MeshArrays &               cells,
+         const XRayGeometry::View &       view,
+         const MeshRadiographParameters & parameters,
+         const Execution &                execution,
+         float *                          image,
+         std::int32_t *                   cellsPassed);
 /** \} */
 } // namespace bone
 

@@ -4,6 +4,8 @@
 #ifndef boneNoiseImageFilter_h
 #define boneNoiseImageFilter_h
 
+#include "boneDetectorParameters.h"
+
 #include <itkImageRegionConstIterator.h>
 #include <itkImageRegionIterator.h>
 #include <itkImageToImageFilter.h>
@@ -21,8 +23,7 @@ namespace bone
  * normal number of standard deviation ElectronicNoise. Reproducible: each pixel draws from its own sequence, by Seed
  * and its place in the image, so that threads and regions do not matter.
  *
- * Parameters: PhotonsPerUnit (default 1; 0: no quantum noise), ElectronicNoise (in units of the intensity, default 0),
- * Seed (default 1). Refused: intensities that are negative or not finite. */
+ * Parameters: \ref NoiseParameters. Refused: intensities that are negative or not finite. */
 template <typename TImage>
 class NoiseImageFilter : public itk::ImageToImageFilter<TImage, TImage>
 {
@@ -38,26 +39,17 @@ public:
   using RegionType = typename TImage::RegionType;
   using PixelType = typename TImage::PixelType;
 
-  itkSetMacro(PhotonsPerUnit, double);
-  itkGetConstMacro(PhotonsPerUnit, double);
-  itkSetMacro(ElectronicNoise, double);
-  itkGetConstMacro(ElectronicNoise, double);
-  itkSetMacro(Seed, std::uint64_t);
-  itkGetConstMacro(Seed, std::uint64_t);
+  BONE_FILTER_PARAMETERS(NoiseParameters, BONE_NOISE_PARAMETERS)
 
 protected:
   NoiseImageFilter() { this->DynamicMultiThreadingOn(); }
   ~NoiseImageFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override
+  VerifyPreconditions() const override
   {
     Superclass::VerifyPreconditions();
-    if (!(m_PhotonsPerUnit >= 0) || !(m_ElectronicNoise >= 0) || !std::isfinite(m_PhotonsPerUnit + m_ElectronicNoise))
-    {
-      itkExceptionMacro("PhotonsPerUnit (" << m_PhotonsPerUnit << ") and ElectronicNoise (" << m_ElectronicNoise
-                                           << ") must not be negative.");
-    }
+    this->VerifyParameters();
   }
 
   void
@@ -81,9 +73,7 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override
   {
     Superclass::PrintSelf(os, indent);
-    os << indent << "PhotonsPerUnit: " << m_PhotonsPerUnit << '\n';
-    os << indent << "ElectronicNoise: " << m_ElectronicNoise << '\n';
-    os << indent << "Seed: " << m_Seed << '\n';
+    PrintParameters(os, indent, m_Parameters);
   }
 
 private:
@@ -94,24 +84,20 @@ private:
     {
       itkExceptionMacro("An intensity is " << intensity << "; it must be finite and not negative.");
     }
-    std::seed_seq    seeds{ static_cast<std::uint32_t>(m_Seed),
-                         static_cast<std::uint32_t>(m_Seed >> 32),
+    std::seed_seq    seeds{ static_cast<std::uint32_t>(m_Parameters.seed),
+                         static_cast<std::uint32_t>(m_Parameters.seed >> 32),
                          static_cast<std::uint32_t>(place),
                          static_cast<std::uint32_t>(place >> 32) };
     std::minstd_rand random(seeds);
     double           value = intensity;
-    if (m_PhotonsPerUnit > 0 && intensity > 0)
+    if (m_Parameters.photonsPerUnit > 0 && intensity > 0)
     {
-      std::poisson_distribution<std::int64_t> photons(intensity * m_PhotonsPerUnit);
-      value = static_cast<double>(photons(random)) / m_PhotonsPerUnit;
+      std::poisson_distribution<std::int64_t> photons(intensity * m_Parameters.photonsPerUnit);
+      value = static_cast<double>(photons(random)) / m_Parameters.photonsPerUnit;
     }
     std::normal_distribution<double> electronic(0.0, 1.0);
-    return m_ElectronicNoise > 0 ? value + m_ElectronicNoise * electronic(random) : value;
+    return m_Parameters.electronicNoise > 0 ? value + m_Parameters.electronicNoise * electronic(random) : value;
   }
-
-  double        m_PhotonsPerUnit{ 1.0 };
-  double        m_ElectronicNoise{ 0.0 };
-  std::uint64_t m_Seed{ 1 };
 };
 } // namespace bone
 

@@ -4,7 +4,6 @@
 #ifndef boneProjectionModel_h
 #define boneProjectionModel_h
 
-#include "boneLoopRunner.h"
 #include "boneMeshRadiograph.h"
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 namespace bone
 {
 /** \class ProjectionModel
- * \brief A density model made ready for any number of radiographs by ProjectMesh: what does not depend on the view.
+ * \brief The parts of a density model that ProjectMesh needs and that do not depend on the view.
  *
  * Its tetrahedra of each degree lie in blocks of eight that are near each other: vertices in double, polynomials of
  * what is integrated in single precision, expanded about the centroids, a block's numbers one beside the other. About
@@ -24,11 +23,11 @@ public:
   /** Of the mesh with these points (mm; `cells.points` is not looked at), which must hold a density and, as the cells,
    * must outlive the model: see \ref MeshRadiograph. Without `keep` only the blocks are formed, and filled for each
    * radiograph anew: less work where there is but one. */
-  ProjectionModel(const std::vector<Vector3> &  points,
-                  const MeshArrays &            cells,
-                  const MeshRadiographOptions & options,
-                  const ParallelFor &           parallelFor,
-                  bool                          keep = true);
+  ProjectionModel(const std::vector<Vector3> &     points,
+                  const MeshArrays &               cells,
+                  const MeshRadiographParameters & parameters,
+                  const Execution &                execution,
+                  bool                             keep = true);
 
   /** The tetrahedra of one degree. */
   struct Blocks
@@ -76,10 +75,10 @@ public:
   {
     return m_Cells;
   }
-  const MeshRadiographOptions &
-  Options() const
+  const MeshRadiographParameters &
+  Parameters() const
   {
-    return m_Options;
+    return m_Parameters;
   }
 
 private:
@@ -90,7 +89,7 @@ private:
 
   const std::vector<Vector3> & m_Points;
   const MeshArrays &           m_Cells;
-  MeshRadiographOptions        m_Options;
+  MeshRadiographParameters     m_Parameters;
   std::vector<Blocks>          m_Blocks;
 };
 
@@ -98,7 +97,7 @@ private:
 void
 ProjectMesh(const ProjectionModel &                 model,
             const std::vector<XRayGeometry::View> & views,
-            const LoopRunner &                      loops,
+            const Execution &                       execution,
             const std::vector<float *> &            images);
 } // namespace bone
 

@@ -5,7 +5,7 @@
 #define boneRadiographSource_h
 
 #include "boneAttenuation.h"
-#include "boneLoopRunner.h"
+#include "boneExecution.h"
 #include "boneXRayGeometry.h"
 
 #include <itkImageSource.h>
@@ -16,17 +16,18 @@
 namespace bone
 {
 /** \class RadiographSource
- * \brief What the filters that make a radiograph share: the geometry as an input, the conversion to attenuation, and an
- * output image that knows where it is.
+ * \brief Base of the filters that make radiographs: the geometry as an input, the conversion to attenuation, and an
+ * output image with its place in space.
  *
- * Inputs: "Geometry", an XRayGeometry, and further views, which are made in the same run; editing one in place re-runs
- * the filter. Output: for each view an image of columns x rows x 1 pixels in physical space: its origin is the centre
- * of pixel (0, 0), its directions are the detector's U, V and U x V, its spacing the pixels' (1 mm along the third). A
- * value is the line integral from the source (parallel: from infinity) to the pixel's centre, in the density's unit
- * times mm, or without unit where HUToAttenuation is not None. The whole image is always made.
+ * Inputs: "Geometry", an XRayGeometry, and the geometries of further views, whose radiographs are made in the same run.
+ * Editing a geometry in place re-runs the filter. Output: for each view an image of columns x rows x 1 pixels in
+ * physical space: its origin is the centre of pixel (0, 0), its directions are the detector's U, V and U x V, its
+ * spacing the pixels' (1 mm along the third). A value is the line integral from the source (parallel: from infinity) to
+ * the pixel's centre, in the density's unit times mm, or without unit where HUToAttenuation is not None. The whole
+ * image is always made.
  *
- * Parameters: HUToAttenuation (default None), WaterAttenuation (per mm, default that at 60 keV), BoneSlope (Bilinear)
- * and AttenuationTable (Table), see AttenuationCurve.
+ * Parameters: \ref RadiographParameters, and AttenuationTable, which HUToAttenuation::Table needs. They apply to all
+ * views, see AttenuationCurve.
  *
  * \tparam TOutputImage a three-dimensional image of a scalar pixel type. */
 template <typename TOutputImage>
@@ -71,12 +72,14 @@ public:
     return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput(GeometryName(index)));
   }
 
-  itkSetMacro(HUToAttenuation, HUToAttenuation);
-  itkGetConstMacro(HUToAttenuation, HUToAttenuation);
-  itkSetMacro(WaterAttenuation, double);
-  itkGetConstMacro(WaterAttenuation, double);
-  itkSetMacro(BoneSlope, double);
-  itkGetConstMacro(BoneSlope, double);
+  BONE_FILTER_PARAMETERS(RadiographParameters, BONE_RADIOGRAPH_PARAMETERS)
+
+  /** The same as GetParameters(), which derived filters have of their own parameters. */
+  const RadiographParameters &
+  GetRadiographParameters() const
+  {
+    return m_Parameters;
+  }
   itkSetMacro(AttenuationTable, std::vector<AttenuationPoint>);
   itkGetConstReferenceMacro(AttenuationTable, std::vector<AttenuationPoint>);
 
@@ -85,7 +88,7 @@ protected:
   ~RadiographSource() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateOutputInformation() override;
   void
@@ -104,16 +107,15 @@ protected:
   }
   /** Writes rows x columns line integrals of each output, row by row; `views` are the outputs'. */
   virtual void
-  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) = 0;
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                   const Execution &                       execution,
+                   const std::vector<float *> &            integrals) = 0;
 
   AttenuationCurve
   GetCurve() const
   {
-    return { m_HUToAttenuation, m_WaterAttenuation, m_BoneSlope, m_AttenuationTable };
+    return { m_Parameters, m_AttenuationTable };
   }
-  /** Loops on this filter's threads; the main one reports progress and stops on abort. */
-  LoopRunner
-  MakeLoops();
 
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
@@ -124,10 +126,6 @@ private:
   {
     return index == 0 ? "Geometry" : "Geometry" + std::to_string(index);
   }
-
-  HUToAttenuation m_HUToAttenuation{ HUToAttenuation::None };
-  double          m_WaterAttenuation{ WaterAttenuationAt60keV };
-  double          m_BoneSlope{ AttenuationCurve().boneSlope };
 
   std::vector<AttenuationPoint> m_AttenuationTable;
 };

@@ -7,7 +7,6 @@
 #include "boneRadiographSource.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace bone
@@ -20,7 +19,7 @@ RadiographSource<TOutputImage>::RadiographSource()
 
 template <typename TOutputImage>
 void
-RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
+RadiographSource<TOutputImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
   for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
@@ -30,25 +29,11 @@ RadiographSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
       itkExceptionMacro("View " << this->GetViewOfOutput(i) << " has no geometry.");
     }
   }
-  if (!(m_WaterAttenuation > 0) || !std::isfinite(m_WaterAttenuation))
+  this->VerifyParameters();
+  const std::string obstacle = this->GetCurve().FindObstacle();
+  if (!obstacle.empty())
   {
-    itkExceptionMacro("WaterAttenuation is " << m_WaterAttenuation << " per mm; it must be positive.");
-  }
-  if (!(m_BoneSlope >= 0) || !std::isfinite(m_BoneSlope))
-  {
-    itkExceptionMacro("BoneSlope is " << m_BoneSlope << " per mm and HU; it must not be negative.");
-  }
-  const auto & table = m_AttenuationTable;
-  const auto   usable = [](const AttenuationPoint & p) { return std::isfinite(p.hu) && p.attenuation >= 0; };
-  bool         rising = std::all_of(table.begin(), table.end(), usable);
-  for (std::size_t i = 1; i < table.size(); ++i)
-  {
-    rising = rising && table[i - 1].hu < table[i].hu;
-  }
-  if (m_HUToAttenuation == HUToAttenuation::Table && (table.empty() || !rising))
-  {
-    itkExceptionMacro("AttenuationTable ("
-                      << table << ") must hold points of rising HU with attenuations that are not negative.");
+    itkExceptionMacro(<< obstacle);
   }
 }
 
@@ -102,20 +87,6 @@ RadiographSource<TOutputImage>::GenerateOutputRequestedRegion(itk::DataObject *)
 }
 
 template <typename TOutputImage>
-LoopRunner
-RadiographSource<TOutputImage>::MakeLoops()
-{
-  const auto runner = [this](itk::ProcessObject * reporter) {
-    return [this, reporter](std::size_t count, const std::function<void(std::size_t)> & body) {
-      this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
-      this->GetMultiThreader()->ParallelizeArray(
-        0, count, [&](itk::SizeValueType i) { body(i); }, reporter);
-    };
-  };
-  return { runner(nullptr), runner(this) };
-}
-
-template <typename TOutputImage>
 void
 RadiographSource<TOutputImage>::GenerateData()
 {
@@ -129,13 +100,14 @@ RadiographSource<TOutputImage>::GenerateData()
     integrals.emplace_back(this->GetOutput(i)->GetBufferedRegion().GetNumberOfPixels());
     pointers.push_back(integrals.back().data());
   }
-  this->ComputeIntegrals(views, pointers);
+  this->ComputeIntegrals(views, Execution(this), pointers);
   for (unsigned int i = 0; i < this->GetNumberOfIndexedOutputs(); ++i)
   {
     std::transform(integrals[i].begin(), integrals[i].end(), this->GetOutput(i)->GetBufferPointer(), [](float value) {
       return static_cast<OutputPixelType>(value);
     });
   }
+  this->UpdateProgress(1.0f);
 }
 
 template <typename TOutputImage>
@@ -143,9 +115,7 @@ void
 RadiographSource<TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "HUToAttenuation: " << m_HUToAttenuation << '\n';
-  os << indent << "WaterAttenuation: " << m_WaterAttenuation << '\n';
-  os << indent << "BoneSlope: " << m_BoneSlope << '\n';
+  PrintParameters(os, indent, m_Parameters);
   os << indent << "AttenuationTable: " << m_AttenuationTable << '\n';
 }
 } // namespace bone

@@ -5,6 +5,7 @@
 #define boneVoxelDRRImageFilter_h
 
 #include "boneRadiographSource.h"
+#include "boneVoxelDRRParameters.h"
 #include "boneVoxelRadiograph.h"
 
 #include <itkImage.h>
@@ -19,8 +20,8 @@ namespace bone
  * voxel counts where its label is MaskLabel; others are 0, and between a voxel that counts and one that does not the
  * value falls linearly.
  *
- * Parameters: MaskLabel (default 0: any label but 0); HUToAttenuation and its numbers, taken voxel
- * by voxel before interpolation; values below -1000 HU (padding) count as air.
+ * Parameters: \ref VoxelDRRParameters and \ref RadiographParameters. HU are converted voxel by voxel before
+ * interpolation; values below -1000 HU (padding) then count as air.
  *
  * Refused: a mask on another grid, and one without a voxel of the label. */
 template <typename TInputImage = itk::Image<float, 3>,
@@ -64,17 +65,21 @@ public:
     return itkDynamicCastInDebugMode<const TMaskImage *>(this->itk::ProcessObject::GetInput("Mask"));
   }
 
-  itkSetMacro(MaskLabel, MaskPixelType);
-  itkGetConstMacro(MaskLabel, MaskPixelType);
+  using Superclass::SetParameters;
+  BONE_FILTER_PARAMETERS(VoxelDRRParameters, BONE_VOXEL_DRR_PARAMETERS)
 
 protected:
   VoxelDRRImageFilter();
   ~VoxelDRRImageFilter() override = default;
 
   void
-  VerifyInputInformation() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  ComputeIntegrals(const std::vector<XRayGeometry::View> & views, const std::vector<float *> & integrals) override;
+  VerifyInputInformation() const override;
+  void
+  ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
+                   const Execution &                       execution,
+                   const std::vector<float *> &            integrals) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
@@ -84,16 +89,15 @@ private:
   bool
   IsMasked(MaskPixelType label) const
   {
-    return m_MaskLabel == 0 ? label != 0 : label == m_MaskLabel;
+    const int counted = m_Parameters.maskLabel;
+    return counted == 0 ? label != 0 : static_cast<int>(label) == counted;
   }
   /** The voxels that count and one more on each side within the image; all without a mask. */
   RegionType
   FindRegion() const;
-  /** Converted values of a region, 0 where the mask is not. */
+  /** Converted values of a region, 0 where the mask does not count. */
   VoxelVolume
-  CopyGrid(const RegionType & region, const ParallelFor & parallelFor) const;
-
-  MaskPixelType m_MaskLabel{ 0 };
+  CopyGrid(const RegionType & region, const Execution & execution) const;
 };
 } // namespace bone
 

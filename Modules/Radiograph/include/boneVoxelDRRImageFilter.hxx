@@ -21,7 +21,15 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VoxelDRRImageFilter(
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>
 void
-VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyInputInformation() ITKv5_CONST
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyPreconditions() const
+{
+  Superclass::VerifyPreconditions();
+  this->VerifyParameters();
+}
+
+template <typename TInputImage, typename TOutputImage, typename TMaskImage>
+void
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyInputInformation() const
 {
   Superclass::VerifyInputInformation();
   const TInputImage * image = this->GetInput();
@@ -38,8 +46,9 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyInputInformati
       !mask->GetSpacing().GetVnlVector().is_equal(spacing.GetVnlVector(), length) ||
       !mask->GetDirection().GetVnlMatrix().is_equal(image->GetDirection().GetVnlMatrix(), tolerance))
   {
-    itkExceptionMacro("The mask and the image lie on different grids (region, origin, spacing or direction): resample "
-                      "the mask to the image.");
+    itkExceptionMacro(
+      "The inputs 'Mask' and 'Image' lie on different grids (region, origin, spacing or direction): resample "
+      "the mask to the image.");
   }
 }
 
@@ -69,9 +78,10 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::FindRegion() const -
   }
   if (!found)
   {
-    itkExceptionMacro("No voxel of the mask has " << (m_MaskLabel == 0 ? "a label" : "the label ")
-                                                  << (m_MaskLabel == 0 ? "" : std::to_string(m_MaskLabel))
-                                                  << ": check MaskLabel.");
+    const int label = m_Parameters.maskLabel;
+    itkExceptionMacro("No voxel of the input 'Mask' has "
+                      << (label == 0 ? std::string("a label") : "the label " + std::to_string(label))
+                      << ": check MaskLabel.");
   }
   RegionType counted;
   counted.SetIndex(lower);
@@ -83,8 +93,8 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::FindRegion() const -
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>
 VoxelVolume
-VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const RegionType &  region,
-                                                                     const ParallelFor & parallelFor) const
+VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const RegionType & region,
+                                                                     const Execution &  execution) const
 {
   const TInputImage *                     image = this->GetInput();
   const TMaskImage *                      mask = this->GetMask();
@@ -107,7 +117,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
   const auto   rows = static_cast<std::size_t>(grid.size[1]);
   const auto   slice = rows * grid.size[0];
   const auto & first = region.GetIndex();
-  parallelFor(grid.size[2], [&](std::size_t z) {
+  execution.For(grid.size[2], [&](std::size_t z) {
     for (std::size_t y = 0; y < rows; ++y)
     {
       typename TInputImage::IndexType index = {
@@ -131,13 +141,16 @@ template <typename TInputImage, typename TOutputImage, typename TMaskImage>
 void
 VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::ComputeIntegrals(
   const std::vector<XRayGeometry::View> & views,
+  const Execution &                       execution,
   const std::vector<float *> &            integrals)
 {
-  const LoopRunner  loops = this->MakeLoops();
-  const VoxelVolume grid = this->CopyGrid(this->FindRegion(), loops.prepare);
+  const VoxelVolume grid = this->CopyGrid(this->FindRegion(), execution.Part(0.0, 0.1));
+  const Execution   main = execution.Part(0.1, 1.0);
+  const auto        count = static_cast<double>(views.size());
   for (std::size_t i = 0; i < views.size(); ++i)
   {
-    ProjectVoxels(grid, views[i], loops, integrals[i]);
+    ProjectVoxels(
+      grid, views[i], main.Part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count), integrals[i]);
   }
 }
 
@@ -146,8 +159,7 @@ void
 VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "MaskLabel: " << static_cast<typename itk::NumericTraits<MaskPixelType>::PrintType>(m_MaskLabel)
-     << '\n';
+  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone
 

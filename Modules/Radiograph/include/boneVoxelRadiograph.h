@@ -4,7 +4,7 @@
 #ifndef boneVoxelRadiograph_h
 #define boneVoxelRadiograph_h
 
-#include "boneLoopRunner.h"
+#include "boneExecution.h"
 #include "boneXRayGeometry.h"
 
 #include <vector>
@@ -26,9 +26,9 @@ struct VoxelVolume
  * planes halfway between voxels along the index axis that it follows most; each piece counts with its length times the
  * linearly interpolated value at its middle. The first and last piece end exactly where the ray meets the image's
  * border, the source or the pixel, so that a constant image gives exact chords. `image` receives rows x columns values,
- * row by row, in the grid's unit times mm. The result does not depend on how `loops` run. */
+ * row by row, in the grid's unit times mm. The result does not depend on the number of threads. */
 void
-ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image);
+ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const Execution & execution, float * image);
 } // namespace bone
 
 #endif

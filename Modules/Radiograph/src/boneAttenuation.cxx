@@ -4,17 +4,11 @@
 #include "boneAttenuation.h"
 
 #include <algorithm>
-#include <ostream>
+#include <cmath>
+#include <sstream>
 
 namespace bone
 {
-std::ostream &
-operator<<(std::ostream & os, HUToAttenuation conversion)
-{
-  static const char * const names[] = { "None", "WaterScaled", "Bilinear", "Table" };
-  return os << names[static_cast<int>(conversion)];
-}
-
 std::ostream &
 operator<<(std::ostream & os, const std::vector<AttenuationPoint> & table)
 {
@@ -25,23 +19,33 @@ operator<<(std::ostream & os, const std::vector<AttenuationPoint> & table)
   return os;
 }
 
-LinearConversion
-AttenuationCurve::Line() const
+std::string
+AttenuationCurve::FindObstacle() const
 {
-  return conversion == HUToAttenuation::None ? LinearConversion() : LinearConversion{ water / 1000.0, water };
+  const auto usable = [](const AttenuationPoint & p) { return std::isfinite(p.hu) && p.attenuation >= 0; };
+  const auto falls = [](const AttenuationPoint & a, const AttenuationPoint & b) { return !(a.hu < b.hu); };
+  if (huToAttenuation != HUToAttenuation::Table ||
+      (!table.empty() && std::all_of(table.begin(), table.end(), usable) &&
+       std::adjacent_find(table.begin(), table.end(), falls) == table.end()))
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << "AttenuationTable (" << table << ") must hold points of rising HU with attenuations that are not negative.";
+  return text.str();
 }
 
 double
 AttenuationCurve::At(double value) const
 {
-  switch (conversion)
+  switch (huToAttenuation)
   {
     case HUToAttenuation::None:
       return value;
     case HUToAttenuation::WaterScaled:
-      return std::max(0.0, water * (1 + value / 1000));
+      return std::max(0.0, waterAttenuation * (1 + value / 1000));
     case HUToAttenuation::Bilinear:
-      return std::max(0.0, water + value * (value < 0 ? water / 1000 : boneSlope));
+      return std::max(0.0, waterAttenuation + value * (value < 0 ? waterAttenuation / 1000 : boneSlope));
     case HUToAttenuation::Table:
       break;
   }

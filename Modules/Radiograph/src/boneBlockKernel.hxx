@@ -1,9 +1,9 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// The image of the tetrahedra, compiled like boneProjectionKernel.hxx, which see for the cell's frame. Eight cells are
-// set up at once, their geometry in double precision, their polynomials in single. Small cells then take spans, large
-// ones and those of high degree strips, ill-conditioned ones rows in double precision.
+// The image of the tetrahedra. It is compiled like boneProjectionKernel.hxx, which describes a cell's frame. Eight
+// cells are set up at once, their geometry in double precision, their polynomials in single. Small cells then take
+// spans, large ones and those of high degree strips, ill-conditioned ones rows in double precision.
 
 #include "bonePowerKernel.hxx"
 #include "boneSpanKernel.hxx"

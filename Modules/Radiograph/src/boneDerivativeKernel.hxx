@@ -1,8 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Derivatives of the projection and its adjoint: sums of boneRayTerms.hxx, which see, over the terms of a pixel for all
-// modes at once, and over the pixels for each term.
+// Derivatives of the projection and its adjoint. The derivatives of a pixel are sums over its terms (boneRayTerms.hxx)
+// for all modes at once; the adjoint sums each term over the pixels.
 
 #include "boneRayTerms.hxx"
 

@@ -6,6 +6,7 @@
 #include "boneProjectedCells.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace bone
@@ -40,12 +41,12 @@ AddFaceTerm(const Barycentric & mu, double value, int face, double rate, ChordTe
 class ChordDerivative
 {
 public:
-  ChordDerivative(const CellDensity & density, const MeshRadiographOptions & options, std::size_t t)
+  ChordDerivative(const CellDensity & density, const MeshRadiographParameters & parameters, std::size_t t)
     : m_Degree(density.Degree(t))
   {
     const double * c = density.Coefficients(t);
     std::transform(c, c + BernsteinCount(m_Degree), m_Coefficients, [&](double value) {
-      return options.scale * value + options.offset;
+      return parameters.scale * value + parameters.offset;
     });
   }
 
@@ -117,16 +118,16 @@ struct alignas(64) ModeBlock
 class DerivativeProjector
 {
 public:
-  DerivativeProjector(const std::vector<Vector3> &  points,
-                      const MeshArrays &            cells,
-                      const XRayGeometry::View &    view,
-                      const MeshRadiographOptions & options,
-                      const RadiographModes &       modes)
+  DerivativeProjector(const std::vector<Vector3> &     points,
+                      const MeshArrays &               cells,
+                      const XRayGeometry::View &       view,
+                      const MeshRadiographParameters & parameters,
+                      const RadiographModes &          modes)
     : m_Points(points)
     , m_Cells(cells)
-    , m_Options(options)
+    , m_Parameters(parameters)
     , m_Modes(modes)
-    , m_Projected(points, cells, view, options, std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 }))
+    , m_Projected(points, cells, view, parameters, std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 }))
     , m_VertexModes((modes.pose ? poseModes : 0) + static_cast<int>(modes.shape.size()))
     , m_VertexBlocks(projection::BlockCount(m_VertexModes))
     , m_Density{ cells.coefficients.data() }
@@ -139,7 +140,7 @@ public:
   }
 
   void
-  Run(const LoopRunner & loops, const std::vector<float *> & images);
+  Run(const Execution & execution, const std::vector<float *> & images);
 
 private:
   /** The numbers of a pixel: vertex modes, then density modes, in whole blocks. */
@@ -152,26 +153,27 @@ private:
   Vector3
   Velocity(int mode, std::size_t point) const;
   void
-  SetDisplacements(const ParallelFor & parallelFor);
+  SetDisplacements(const Execution & execution);
   void
-  AddCells(const std::vector<IdType> & ids, const projection::Band & band) const;
+  AddCells(const std::vector<IdType> & ids, const Execution & execution, const projection::Band & band);
   void
   AddGeneral(std::size_t t, const projection::Band & band) const;
   void
-  DrawBand(std::size_t bandId, const std::vector<float *> & images) const;
+  DrawBand(std::size_t bandId, const Execution & execution, const std::vector<float *> & images);
   void
   WriteRow(int row, std::pair<int, int> columns, const float * sums, const std::vector<float *> & images) const;
 
-  const std::vector<Vector3> &  m_Points;
-  const MeshArrays &            m_Cells;
-  const MeshRadiographOptions & m_Options;
-  const RadiographModes &       m_Modes;
-  ProjectedCells                m_Projected;
-  int                           m_VertexModes; ///< pose and shape
-  int                           m_VertexBlocks;
-  std::vector<const double *>   m_Density; ///< that of the mesh, then the modes'
-  int                           m_DensityBlocks;
-  std::vector<ModeBlock>        m_Displacement; ///< of each point, in the rays' coordinates: 3 x vertex blocks
+  const std::vector<Vector3> &     m_Points;
+  const MeshArrays &               m_Cells;
+  const MeshRadiographParameters & m_Parameters;
+  const RadiographModes &          m_Modes;
+  ProjectedCells                   m_Projected;
+  int                              m_VertexModes; ///< pose and shape
+  int                              m_VertexBlocks;
+  std::vector<const double *>      m_Density; ///< that of the mesh, then the modes'
+  int                              m_DensityBlocks;
+  std::atomic<std::size_t>         m_Done{ 0 };    ///< cells drawn, counted in each band
+  std::vector<ModeBlock>           m_Displacement; ///< of each point, in the rays' coordinates: 3 x vertex blocks
 };
 
 Vector3
@@ -182,37 +184,40 @@ DerivativeProjector::Velocity(int mode, std::size_t point) const
 }
 
 void
-DerivativeProjector::SetDisplacements(const ParallelFor & parallelFor)
+DerivativeProjector::SetDisplacements(const Execution & execution)
 {
   m_Displacement.assign(3 * m_VertexBlocks * m_Points.size(), ModeBlock{});
-  ForEachInBlocks(parallelFor, m_Points.size(), [&](std::size_t p) {
-    float * const to = m_Displacement[3 * m_VertexBlocks * p].of;
-    for (int mode = 0; mode < m_VertexModes; ++mode)
-    {
-      const Vector3 moved = m_Projected.Rays().ToPixel() * Velocity(mode, p);
-      for (int axis = 0; axis < 3; ++axis)
+  execution.For(
+    m_Points.size(),
+    [&](std::size_t p) {
+      float * const to = m_Displacement[3 * m_VertexBlocks * p].of;
+      for (int mode = 0; mode < m_VertexModes; ++mode)
       {
-        to[axis * m_VertexBlocks * projection::modeLanes + mode] = static_cast<float>(moved[axis]);
+        const Vector3 moved = m_Projected.Rays().ToPixel() * Velocity(mode, p);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          to[axis * m_VertexBlocks * projection::modeLanes + mode] = static_cast<float>(moved[axis]);
+        }
       }
-    }
-  });
+    },
+    loopChunk);
 }
 
 void
-DerivativeProjector::Run(const LoopRunner & loops, const std::vector<float *> & images)
+DerivativeProjector::Run(const Execution & execution, const std::vector<float *> & images)
 {
-  m_Projected.Prepare(loops.prepare);
+  m_Projected.Prepare(execution.Silent());
   if (m_VertexModes > 0)
   {
-    SetDisplacements(loops.prepare);
+    SetDisplacements(execution.Silent());
   }
-  loops.draw(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, images); });
+  execution.For(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, execution, images); });
 }
 
 void
 DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) const
 {
-  const ChordDerivative derivative(m_Projected.Density(), m_Options, t);
+  const ChordDerivative derivative(m_Projected.Density(), m_Parameters, t);
   const std::size_t     first = t * BernsteinCount(m_Cells.maximumDegree);
   const int             count = BernsteinCount(m_Cells.degree[t]);
   m_Projected.ForEachChord(
@@ -234,24 +239,29 @@ DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) co
       for (std::size_t m = 1; m < m_Density.size(); ++m)
       {
         const double sum = std::inner_product(terms.basis, terms.basis + count, m_Density[m] + first, 0.0);
-        sums[m] += static_cast<float>(m_Options.scale * sum);
+        sums[m] += static_cast<float>(m_Parameters.scale * sum);
       }
     });
 }
 
 void
-DerivativeProjector::AddCells(const std::vector<IdType> & ids, const projection::Band & band) const
+DerivativeProjector::AddCells(const std::vector<IdType> & ids,
+                              const Execution &           execution,
+                              const projection::Band &    band)
 {
   projection::Derivatives task{};
   task.vertexBlocks = m_VertexBlocks;
   task.densityBlocks = m_DensityBlocks;
   task.densityModes = static_cast<int>(m_Density.size());
   task.density = m_Density.data();
+  const std::size_t           total = m_Projected.CountInBands();
   const std::ptrdiff_t        coefficients = BernsteinCount(m_Cells.maximumDegree);
-  const projection::Kernels & kernels = projection::SelectKernels(m_Options.portable);
+  const projection::Kernels & kernels = projection::SelectKernels(m_Parameters.portable);
   m_Projected.ForEachGroup(
     ids,
     [&](projection::CellGroup & group, const IdType * members, std::size_t after) {
+      // A band of many modes takes long.
+      execution.Report(static_cast<double>(m_Done += group.count) / static_cast<double>(total));
       for (int g = 0; g < group.count; ++g)
       {
         for (int i = 0; m_VertexBlocks > 0 && i < 4; ++i)
@@ -268,11 +278,14 @@ DerivativeProjector::AddCells(const std::vector<IdType> & ids, const projection:
       }
       kernels.derive(group, task, band);
     },
-    [&](std::size_t t) { AddGeneral(t, band); });
+    [&](std::size_t t) {
+      AddGeneral(t, band);
+      execution.Report(static_cast<double>(++m_Done) / static_cast<double>(total));
+    });
 }
 
 void
-DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & images) const
+DerivativeProjector::DrawBand(std::size_t bandId, const Execution & execution, const std::vector<float *> & images)
 {
   const int                 firstRow = m_Projected.FirstRow(bandId), endRow = m_Projected.EndRow(bandId);
   const int                 columns = m_Projected.Rays().Columns();
@@ -280,7 +293,7 @@ DerivativeProjector::DrawBand(std::size_t bandId, const std::vector<float *> & i
   const std::pair<int, int> range = m_Projected.ColumnsOf(ids);
   const std::ptrdiff_t      stride = range.second - range.first;
   std::vector<ModeBlock>    sums(stride * (endRow - firstRow) * Blocks() + 1, ModeBlock{}); // never empty
-  AddCells(ids, projection::Band{ sums.data()->of, stride, firstRow, endRow, columns, range.first });
+  AddCells(ids, execution, projection::Band{ sums.data()->of, stride, firstRow, endRow, columns, range.first });
   for (int row = firstRow; row < endRow; ++row)
   {
     WriteRow(row, range, sums.data()->of + (row - firstRow) * stride * Blocks() * projection::modeLanes, images);
@@ -333,20 +346,20 @@ DerivativeProjector::WriteRow(int                          row,
 class Backprojector
 {
 public:
-  Backprojector(const std::vector<Vector3> &  points,
-                const MeshArrays &            cells,
-                const XRayGeometry::View &    view,
-                const MeshRadiographOptions & options,
-                bool                          withPositions)
+  Backprojector(const std::vector<Vector3> &     points,
+                const MeshArrays &               cells,
+                const XRayGeometry::View &       view,
+                const MeshRadiographParameters & parameters,
+                bool                             withPositions)
     : m_Points(points)
     , m_Cells(cells)
-    , m_Options(options)
-    , m_Projected(points, cells, view, options, 1)
+    , m_Parameters(parameters)
+    , m_Projected(points, cells, view, parameters, 1)
     , m_Positions(withPositions ? 4 * cells.tetrahedra.size() : 0, Vector3(Vector3::Zero()))
   {}
 
   void
-  Run(const LoopRunner & loops, const float * image, double * coefficients);
+  Run(const Execution & execution, const float * image, double * coefficients);
   void
   GatherPositions(Vector3 * gradient) const;
 
@@ -356,13 +369,13 @@ private:
   void
   AddGeneral(std::size_t t, double * coefficients);
 
-  const std::vector<Vector3> &  m_Points;
-  const MeshArrays &            m_Cells;
-  const MeshRadiographOptions & m_Options;
-  ProjectedCells                m_Projected;
-  std::vector<float>            m_Weights; ///< the image times the rays' step length
-  projection::Band              m_Band{};
-  std::vector<Vector3>          m_Positions; ///< of each cell and vertex, in space
+  const std::vector<Vector3> &     m_Points;
+  const MeshArrays &               m_Cells;
+  const MeshRadiographParameters & m_Parameters;
+  ProjectedCells                   m_Projected;
+  std::vector<float>               m_Weights; ///< the image times the rays' step length
+  projection::Band                 m_Band{};
+  std::vector<Vector3>             m_Positions; ///< of each cell and vertex, in space
 };
 
 void
@@ -385,7 +398,7 @@ Backprojector::SetWeights(const float * image)
 void
 Backprojector::AddGeneral(std::size_t t, double * coefficients)
 {
-  const ChordDerivative derivative(m_Projected.Density(), m_Options, t);
+  const ChordDerivative derivative(m_Projected.Density(), m_Parameters, t);
   const int             count = BernsteinCount(m_Cells.degree[t]);
   m_Projected.ForEachChord(
     t, 0, m_Band.endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric & mu) {
@@ -403,15 +416,15 @@ Backprojector::AddGeneral(std::size_t t, double * coefficients)
 }
 
 void
-Backprojector::Run(const LoopRunner & loops, const float * image, double * coefficients)
+Backprojector::Run(const Execution & execution, const float * image, double * coefficients)
 {
-  m_Projected.Prepare(loops.prepare);
+  m_Projected.Prepare(execution.Silent());
   SetWeights(image);
   const std::size_t stride = BernsteinCount(m_Cells.maximumDegree), cells = m_Cells.tetrahedra.size();
   std::fill_n(coefficients, stride * cells, 0.0);
   constexpr std::size_t       block = 256;
-  const projection::Kernels & kernels = projection::SelectKernels(m_Options.portable);
-  loops.draw((cells + block - 1) / block, [&](std::size_t b) {
+  const projection::Kernels & kernels = projection::SelectKernels(m_Parameters.portable);
+  execution.For((cells + block - 1) / block, [&](std::size_t b) {
     std::vector<IdType> ids(std::min(cells, (b + 1) * block) - b * block);
     std::iota(ids.begin(), ids.end(), static_cast<IdType>(b * block));
     m_Projected.ForEachGroup(
@@ -432,7 +445,7 @@ Backprojector::Run(const LoopRunner & loops, const float * image, double * coeff
       },
       [&](std::size_t t) { AddGeneral(t, coefficients + t * stride); });
     const std::size_t end = std::min(cells, (b + 1) * block) * stride;
-    std::for_each(coefficients + b * block * stride, coefficients + end, [&](double & c) { c *= m_Options.scale; });
+    std::for_each(coefficients + b * block * stride, coefficients + end, [&](double & c) { c *= m_Parameters.scale; });
   });
 }
 
@@ -448,29 +461,29 @@ Backprojector::GatherPositions(Vector3 * gradient) const
 } // namespace
 
 void
-ProjectMeshDerivatives(const std::vector<Vector3> &  points,
-                       const MeshArrays &            cells,
-                       const XRayGeometry::View &    view,
-                       const MeshRadiographOptions & options,
-                       const RadiographModes &       modes,
-                       const LoopRunner &            loops,
-                       const std::vector<float *> &  images)
+ProjectMeshDerivatives(const std::vector<Vector3> &     points,
+                       const MeshArrays &               cells,
+                       const XRayGeometry::View &       view,
+                       const MeshRadiographParameters & parameters,
+                       const RadiographModes &          modes,
+                       const Execution &                execution,
+                       const std::vector<float *> &     images)
 {
-  DerivativeProjector(points, cells, view, options, modes).Run(loops, images);
+  DerivativeProjector(points, cells, view, parameters, modes).Run(execution, images);
 }
 
 void
-BackprojectToMesh(const std::vector<Vector3> &  points,
-                  const MeshArrays &            cells,
-                  const XRayGeometry::View &    view,
-                  const MeshRadiographOptions & options,
-                  const LoopRunner &            loops,
-                  const float *                 image,
-                  double *                      coefficients,
-                  Vector3 *                     positions)
+BackprojectToMesh(const std::vector<Vector3> &     points,
+                  const MeshArrays &               cells,
+                  const XRayGeometry::View &       view,
+                  const MeshRadiographParameters & parameters,
+                  const Execution &                execution,
+                  const float *                    image,
+                  double *                         coefficients,
+                  Vector3 *                        positions)
 {
-  Backprojector backprojector(points, cells, view, options, positions != nullptr);
-  backprojector.Run(loops, image, coefficients);
+  Backprojector backprojector(points, cells, view, parameters, positions != nullptr);
+  backprojector.Run(execution, image, coefficients);
   if (positions != nullptr)
   {
     backprojector.GatherPositions(positions);

@@ -15,48 +15,62 @@
 
 namespace bone
 {
+MeshRadiographParameters
+MakeMeshRadiographParameters(int minimumRegion, int maximumRegion, HUToAttenuation conversion, double waterAttenuation)
+{
+  MeshRadiographParameters parameters;
+  parameters.minimumRegion = minimumRegion;
+  parameters.maximumRegion = maximumRegion;
+  if (conversion != HUToAttenuation::None)
+  {
+    parameters.scale = waterAttenuation / 1000.0;
+    parameters.offset = waterAttenuation;
+  }
+  return parameters;
+}
+
 std::string
-FindObstacle(const std::vector<Vector3> &  points,
-             const MeshArrays &            cells,
-             const MeshRadiographOptions & options,
-             HUToAttenuation               conversion)
+FindObstacle(const std::vector<Vector3> &     points,
+             const MeshArrays &               cells,
+             const MeshRadiographParameters & parameters,
+             HUToAttenuation                  conversion)
 {
   std::ostringstream text;
   const auto         finite = [](double value) { return std::isfinite(value); };
-  const bool         restricted = options.minimumRegion > MeshRadiographOptions().minimumRegion ||
-                          options.maximumRegion < MeshRadiographOptions().maximumRegion;
+  const bool         restricted = parameters.minimumRegion > MeshRadiographParameters().minimumRegion ||
+                          parameters.maximumRegion < MeshRadiographParameters().maximumRegion;
   if (conversion != HUToAttenuation::None && conversion != HUToAttenuation::WaterScaled)
   {
-    text << "HUToAttenuation is " << conversion
+    text << "HUToAttenuation is " << ParameterText(conversion)
          << ", which is no line: a polynomial would not stay one. Convert the CT and fit the model to the result "
             "(AttenuationImageFilter), then leave it at None.";
   }
-  else if (options.minimumRegion > options.maximumRegion)
+  else if (parameters.minimumRegion > parameters.maximumRegion)
   {
-    text << "MinimumRegion (" << options.minimumRegion << ") is above MaximumRegion (" << options.maximumRegion
+    text << "MinimumRegion (" << parameters.minimumRegion << ") is above MaximumRegion (" << parameters.maximumRegion
          << "): no tetrahedron would count.";
   }
   else if (cells.tetrahedra.empty())
   {
-    text << "The mesh has no tetrahedra.";
+    text << "The input 'Mesh' has no tetrahedra.";
   }
   else if (!cells.HasDensity())
   {
-    text << "The mesh has no density: fit one to a CT first (DensityFitFilter).";
+    text << "The input 'Mesh' has no density: fit one to a CT first (DensityFitFilter).";
   }
   else if (!std::all_of(points.begin(), points.end(), [](const Vector3 & p) { return p.allFinite(); }) ||
            !std::all_of(cells.coefficients.begin(), cells.coefficients.end(), finite))
   {
-    text << "A point or a density coefficient of the mesh is not finite.";
+    text << "A point or a density coefficient of the input 'Mesh' is not finite.";
   }
   else if (restricted && cells.region.empty())
   {
-    text << "The mesh has no regions to choose from: leave MinimumRegion and MaximumRegion alone.";
+    text << "The input 'Mesh' has no regions to choose from: leave MinimumRegion and MaximumRegion alone.";
   }
   else if (conversion != HUToAttenuation::None && cells.quantity != DensityQuantity::HounsfieldUnit &&
            cells.quantity != DensityQuantity::Unknown)
   {
-    text << "HUToAttenuation is " << conversion << ", but the mesh's density is in "
+    text << "HUToAttenuation is " << ParameterText(conversion) << ", but the density of the input 'Mesh' is in "
          << DensityQuantityName(cells.quantity) << ": set it to None.";
   }
   return text.str();
@@ -101,7 +115,7 @@ class ModelProjection
 public:
   ModelProjection(const ProjectionModel & model, const XRayGeometry::View & view)
     : m_Model(model)
-    , m_Cells(model.Points(), model.Cells(), view, model.Options(), 1)
+    , m_Cells(model.Points(), model.Cells(), view, model.Parameters(), 1)
     , m_Rays(m_Cells.Rays())
     , m_Bands(BandCount(view))
   {
@@ -282,8 +296,8 @@ ModelProjection::MakeRun(const ProjectionModel::Blocks & blocks) const
                             density.Coefficients(0),
                             density.Stride(),
                             blocks.degree,
-                            m_Model.Options().scale,
-                            m_Model.Options().offset,
+                            m_Model.Parameters().scale,
+                            m_Model.Parameters().offset,
                             { origin[0], origin[1], origin[2] },
                             {},
                             m_Rays.IsParallel() };
@@ -426,14 +440,14 @@ ModelProjection::WriteRows(int firstRow, int endRow, float * image) const
 void
 ProjectMesh(const ProjectionModel &                 model,
             const std::vector<XRayGeometry::View> & views,
-            const LoopRunner &                      loops,
+            const Execution &                       execution,
             const std::vector<float *> &            images)
 {
   struct Part
   {
     std::size_t view, task;
   };
-  const projection::Kernels &                   kernels = projection::SelectKernels(model.Options().portable);
+  const projection::Kernels &                   kernels = projection::SelectKernels(model.Parameters().portable);
   std::vector<std::unique_ptr<ModelProjection>> projections;
   std::vector<Part>                             parts;
   for (std::size_t v = 0; v < views.size(); ++v)
@@ -444,7 +458,8 @@ ProjectMesh(const ProjectionModel &                 model,
       parts.push_back({ v, task });
     }
   }
-  loops.draw(parts.size(), [&](std::size_t i) { projections[parts[i].view]->Draw(parts[i].task, kernels); });
+  execution.Part(0.0, 0.9).For(parts.size(),
+                               [&](std::size_t i) { projections[parts[i].view]->Draw(parts[i].task, kernels); });
   constexpr int rowsAtOnce = 128;
   parts.clear();
   for (std::size_t v = 0; v < views.size(); ++v)
@@ -454,7 +469,7 @@ ProjectMesh(const ProjectionModel &                 model,
       parts.push_back({ v, static_cast<std::size_t>(row) });
     }
   }
-  loops.prepare(parts.size(), [&](std::size_t i) {
+  execution.Part(0.9, 1.0).For(parts.size(), [&](std::size_t i) {
     const int first = static_cast<int>(parts[i].task), rows = views[parts[i].view].size[1];
     projections[parts[i].view]->WriteRows(first, std::min(rows, first + rowsAtOnce), images[parts[i].view]);
   });
@@ -464,10 +479,11 @@ void
 ProjectMesh(const std::vector<Vector3> &            points,
             const MeshArrays &                      cells,
             const std::vector<XRayGeometry::View> & views,
-            const MeshRadiographOptions &           options,
-            const LoopRunner &                      loops,
+            const MeshRadiographParameters &        parameters,
+            const Execution &                       execution,
             const std::vector<float *> &            images)
 {
-  ProjectMesh(ProjectionModel(points, cells, options, loops.prepare, views.size() > 1), views, loops, images);
+  ProjectMesh(
+    ProjectionModel(points, cells, parameters, execution.Silent(), views.size() > 1), views, execution, images);
 }
 } // namespace bone

@@ -37,22 +37,22 @@ operator<(const Entry & a, const Entry & b)
 class Walker
 {
 public:
-  Walker(const std::vector<Vector3> &  points,
-         const MeshArrays &            cells,
-         const XRayGeometry::View &    view,
-         const MeshRadiographOptions & options)
+  Walker(const std::vector<Vector3> &     points,
+         const MeshArrays &               cells,
+         const XRayGeometry::View &       view,
+         const MeshRadiographParameters & parameters)
     : m_Points(points)
     , m_Cells(cells)
-    , m_Density(cells, options)
+    , m_Density(cells, parameters)
     , m_Frame(RayFrame::Displaced(view))
   {}
 
   void
-  Run(const LoopRunner & loops, float * image, std::int32_t * cellsPassed);
+  Run(const Execution & execution, float * image, std::int32_t * cellsPassed);
 
 private:
   void
-  Prepare(const ParallelFor & parallelFor);
+  Prepare(const Execution & execution);
   void
   FindEntryFaces();
   void
@@ -77,24 +77,22 @@ private:
 };
 
 void
-Walker::Prepare(const ParallelFor & parallelFor)
+Walker::Prepare(const Execution & execution)
 {
   const std::size_t count = m_Cells.tetrahedra.size();
   m_Lines.resize(count);
   m_Flat.resize(count);
-  constexpr std::size_t block = 1024;
-  parallelFor((count + block - 1) / block, [&](std::size_t b) {
-    for (std::size_t t = b * block; t < std::min(count, (b + 1) * block); ++t)
+  constexpr std::size_t chunk = 1024;
+  const auto restrict = [&](std::size_t t) {
+    const Id4 &       v = m_Cells.tetrahedra[t];
+    AffineBarycentric mu;
+    m_Flat[t] = !mu.Set(m_Points[v[0]], m_Points[v[1]], m_Points[v[2]], m_Points[v[3]]);
+    if (!m_Flat[t])
     {
-      const Id4 &       v = m_Cells.tetrahedra[t];
-      AffineBarycentric mu;
-      m_Flat[t] = !mu.Set(m_Points[v[0]], m_Points[v[1]], m_Points[v[2]], m_Points[v[3]]);
-      if (!m_Flat[t])
-      {
-        m_Lines[t] = RestrictToRays(m_Frame, mu);
-      }
+      m_Lines[t] = RestrictToRays(m_Frame, mu);
     }
-  });
+  };
+  execution.For(count, restrict, chunk);
 }
 
 void
@@ -260,24 +258,24 @@ Walker::DrawRow(int row, float * image, std::int32_t * cellsPassed) const
 }
 
 void
-Walker::Run(const LoopRunner & loops, float * image, std::int32_t * cellsPassed)
+Walker::Run(const Execution & execution, float * image, std::int32_t * cellsPassed)
 {
-  Prepare(loops.prepare);
+  Prepare(execution.Silent());
   FindEntryFaces();
   FindSource();
-  loops.draw(m_Frame.Rows(), [&](std::size_t row) { DrawRow(static_cast<int>(row), image, cellsPassed); });
+  execution.For(m_Frame.Rows(), [&](std::size_t row) { DrawRow(static_cast<int>(row), image, cellsPassed); });
 }
 } // namespace
 
 void
-WalkMesh(const std::vector<Vector3> &  points,
-         const MeshArrays &            cells,
-         const XRayGeometry::View &    view,
-         const MeshRadiographOptions & options,
-         const LoopRunner &            loops,
-         float *                       image,
-         std::int32_t *                cellsPassed)
+WalkMesh(const std::vector<Vector3> &     points,
+         const MeshArrays &               cells,
+         const XRayGeometry::View &       view,
+         const MeshRadiographParameters & parameters,
+         const Execution &                execution,
+         float *                          image,
+         std::int32_t *                   cellsPassed)
 {
-  Walker(points, cells, view, options).Run(loops, image, cellsPassed);
+  Walker(points, cells, view, parameters).Run(execution, image, cellsPassed);
 }
 } // namespace bone

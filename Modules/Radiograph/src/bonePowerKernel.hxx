@@ -1,8 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// From what a model keeps of its tetrahedra's polynomials to monomials in a view, compiled like
-// boneProjectionKernel.hxx, which see.
+// Conversion of the polynomials that a model keeps to monomials in a view. It is compiled like
+// boneProjectionKernel.hxx.
 //
 // A polynomial is kept as its expansion about the tetrahedron's centroid in the edges from its first vertex,
 //   f = sum over d of T_d(e, ..., e), e = (mu_1, mu_2, mu_3) - (1, 1, 1) / 4,

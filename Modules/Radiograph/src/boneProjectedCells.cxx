@@ -10,28 +10,28 @@
 
 namespace bone
 {
-ProjectedCells::ProjectedCells(const std::vector<Vector3> &  points,
-                               const MeshArrays &            cells,
-                               const XRayGeometry::View &    view,
-                               const MeshRadiographOptions & options,
-                               int                           bands)
+ProjectedCells::ProjectedCells(const std::vector<Vector3> &     points,
+                               const MeshArrays &               cells,
+                               const XRayGeometry::View &       view,
+                               const MeshRadiographParameters & parameters,
+                               int                              bands)
   : m_Points(points)
   , m_Cells(cells)
-  , m_Options(options)
-  , m_Density(cells, options)
+  , m_Parameters(parameters)
+  , m_Density(cells, parameters)
   , m_Frame(RayFrame::Displaced(view))
   , m_BandStart(bands + 1)
 {}
 
 void
-ProjectedCells::Prepare(const ParallelFor & parallelFor)
+ProjectedCells::Prepare(const Execution & execution)
 {
-  ProjectPoints(parallelFor);
+  ProjectPoints(execution);
   SetBands();
   m_Rows.resize(m_Cells.tetrahedra.size());
   const std::size_t block = 2048, blocks = (m_Rows.size() + block - 1) / block;
   m_Bins.resize(blocks);
-  parallelFor(blocks, [&](std::size_t b) {
+  execution.For(blocks, [&](std::size_t b) {
     const std::size_t first = b * block, end = std::min(m_Rows.size(), first + block);
     for (std::size_t t = first; t < end; ++t)
     {
@@ -42,7 +42,7 @@ ProjectedCells::Prepare(const ParallelFor & parallelFor)
 }
 
 void
-ProjectedCells::ProjectPoints(const ParallelFor & parallelFor)
+ProjectedCells::ProjectPoints(const Execution & execution)
 {
   m_Projected.resize(m_Points.size());
   const auto project = [&](std::size_t p) {
@@ -53,7 +53,7 @@ ProjectedCells::ProjectPoints(const ParallelFor & parallelFor)
   constexpr std::size_t few = 16384;
   if (m_Points.size() > few)
   {
-    ForEachInBlocks(parallelFor, m_Points.size(), project);
+    execution.For(m_Points.size(), project, loopChunk);
     return;
   }
   for (std::size_t p = 0; p < m_Points.size(); ++p)
@@ -98,8 +98,8 @@ ProjectedCells::MakeGroup(const IdType * ids, int count) const
   projection::CellGroup group;
   group.count = count;
   group.degree = m_Density.Degree(ids[0]);
-  group.scale = m_Options.scale;
-  group.offset = m_Options.offset;
+  group.scale = m_Parameters.scale;
+  group.offset = m_Parameters.offset;
   group.parallel = m_Frame.IsParallel();
   for (int g = 0; g < group.count; ++g)
   {
@@ -193,6 +193,14 @@ ProjectedCells::FillBins(std::size_t first, std::size_t end, Bins & bins) const
   bins.cells.resize(bins.start.back());
   auto next = bins.start;
   forEachBin([&](IdType t, std::size_t band) { bins.cells[next[band]++] = t; });
+}
+
+std::size_t
+ProjectedCells::CountInBands() const
+{
+  return std::accumulate(m_Bins.begin(), m_Bins.end(), std::size_t{ 0 }, [](std::size_t count, const Bins & bins) {
+    return count + bins.cells.size();
+  });
 }
 
 std::vector<IdType>

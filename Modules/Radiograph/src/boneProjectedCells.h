@@ -9,7 +9,7 @@
 
 namespace bone
 {
-/** What a ray passes of a cell. */
+/** The part of a ray that lies in a tetrahedron. */
 struct CellChord
 {
   Barycentric entry;
@@ -30,15 +30,15 @@ constexpr double nearSource = 0.02;
 class ProjectedCells
 {
 public:
-  ProjectedCells(const std::vector<Vector3> &  points,
-                 const MeshArrays &            cells,
-                 const XRayGeometry::View &    view,
-                 const MeshRadiographOptions & options,
-                 int                           bands);
+  ProjectedCells(const std::vector<Vector3> &     points,
+                 const MeshArrays &               cells,
+                 const XRayGeometry::View &       view,
+                 const MeshRadiographParameters & parameters,
+                 int                              bands);
 
   /** Projects the points and finds each band's cells. */
   void
-  Prepare(const ParallelFor & parallelFor);
+  Prepare(const Execution & execution);
 
   const RayFrame &
   Rays() const
@@ -69,6 +69,10 @@ public:
   std::vector<IdType>
   CellsOfBand(std::size_t band) const;
 
+  /** The cells of all bands; a cell that meets several bands counts in each. */
+  std::size_t
+  CountInBands() const;
+
   /** The columns that these cells may cover: first, and one past the last. */
   std::pair<int, int>
   ColumnsOf(const std::vector<IdType> & ids) const;
@@ -88,7 +92,7 @@ public:
 private:
   enum class Path : std::uint8_t
   {
-    None,    ///< not selected, not before the detector, or between the pixels
+    None,    ///< not drawn: not selected, beyond the detector, or between the pixels
     Kernel,  ///< wholly between source and detector
     General, ///< behind or near the source, or through the detector
   };
@@ -98,7 +102,7 @@ private:
     std::int32_t end{ 0 };
     Path         path{ Path::None };
   };
-  /** Some cells, by bands. */
+  /** Some tetrahedra, sorted by bands. */
   struct Bins
   {
     std::vector<std::size_t> start; ///< per band, into cells
@@ -106,7 +110,7 @@ private:
   };
 
   void
-  ProjectPoints(const ParallelFor & parallelFor);
+  ProjectPoints(const Execution & execution);
   void
   SetBands();
   RowRange
@@ -118,36 +122,25 @@ private:
   ColumnRun
   ColumnsOfRow(const CellLines & lines, int row) const;
 
-  const std::vector<Vector3> &  m_Points;
-  const MeshArrays &            m_Cells;
-  const MeshRadiographOptions & m_Options;
-  CellDensity                   m_Density;
-  RayFrame                      m_Frame;
+  const std::vector<Vector3> &     m_Points;
+  const MeshArrays &               m_Cells;
+  const MeshRadiographParameters & m_Parameters;
+  CellDensity                      m_Density;
+  RayFrame                         m_Frame;
 
   std::vector<ProjectedPoint> m_Projected;
-  std::vector<RowRange>       m_Rows;      ///< of each cell
+  std::vector<RowRange>       m_Rows;      ///< the rows of each tetrahedron
   std::vector<int>            m_BandStart; ///< first row of each band, and the number of rows
-  std::vector<Bins>           m_Bins;      ///< of blocks of cells
+  std::vector<Bins>           m_Bins;      ///< the bins of each block of tetrahedra
 };
 
-/** Entry and exit depth of a ray and their faces, by the planes' lines at its pixel; false where it misses. */
+/** Sets the depths at which a ray enters and leaves a tetrahedron and the faces that it meets there, from the lines of
+ * the faces' planes at its pixel. Returns false where the ray misses the tetrahedron. */
 bool
 ClipDepth(const CellLines & lines, double detectorDepth, double column, double row, double (&depth)[2], int (&face)[2]);
 
-/** parallelFor over blocks of items, so that a call is worth its while. */
-template <typename TFunction>
-void
-ForEachInBlocks(const ParallelFor & parallelFor, std::size_t count, const TFunction & function)
-{
-  constexpr std::size_t block = 1024;
-  parallelFor((count + block - 1) / block, [&](std::size_t b) {
-    const std::size_t end = std::min(count, (b + 1) * block);
-    for (std::size_t i = b * block; i < end; ++i)
-    {
-      function(i);
-    }
-  });
-}
+/** Points or cells that a loop of short bodies takes at a time. */
+constexpr std::size_t loopChunk = 1024;
 
 template <typename TGroup, typename TGeneral>
 void

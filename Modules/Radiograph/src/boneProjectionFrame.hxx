@@ -1,8 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// The part of boneProjectionKernel.hxx, which see, that knows nothing of the density: a tetrahedron seen from the
-// source.
+// The part of boneProjectionKernel.hxx that does not depend on the density: a tetrahedron seen from the source.
 
 namespace bone
 {

@@ -25,18 +25,18 @@ constexpr int groupSize = 4;
 /** Blocks of eight tetrahedra of one degree, wholly between source and detector, and how they are seen. */
 struct BlockRun
 {
-  const std::int32_t * blocks;       ///< which
-  std::size_t          count;        ///< of these
+  const std::int32_t * blocks;       ///< the numbers of the blocks
+  std::size_t          count;        ///< number of blocks
   const double *       vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), eight tetrahedra
   const float *        coefficients; ///< of each block: expansions of what is integrated, see bonePowerKernel.hxx, then
                                      ///< the largest magnitude of a Bernstein coefficient, eight tetrahedra
   const std::int32_t * cells;        ///< of each block: eight; -1 after the last of all
   const double *       density;      ///< coefficients as they are given, a row a tetrahedron
-  std::size_t          densityStride; ///< from row to row
+  std::size_t          densityStride; ///< numbers from row to row
   int                  degree;
   double               scale; ///< scale * density + offset is integrated
   double               offset;
-  double               origin[3]; ///< of the rays
+  double               origin[3]; ///< origin of the rays
   double toPixel[3][3];           ///< from a displacement to (s, column s, row s), in a parallel beam (s, column, row)
   bool   parallel;
 };
@@ -75,8 +75,8 @@ BlockCount(std::size_t modes)
   return static_cast<int>((modes + modeLanes - 1) / modeLanes);
 }
 
-/** What is derived. At each pixel lie the derivatives by displacements of the vertices, in blocks, then, in blocks, the
- * integrals of density modes, of which the first is the density itself. */
+/** The task of Kernels::derive. At each pixel lie the derivatives by displacements of the vertices, in blocks, then, in
+ * blocks, the integrals of density modes, of which the first is the density itself. */
 struct Derivatives
 {
   int                    vertexBlocks;
@@ -84,19 +84,20 @@ struct Derivatives
   int                    densityBlocks;
   int                    densityModes;
   const double * const * density;                ///< coefficients of each mode
-  std::ptrdiff_t         coefficient[groupSize]; ///< where each cell's begin
-  int                    nextCount;              ///< of cells in the group to come, whose coefficients are fetched
-  std::ptrdiff_t         next[groupSize];        ///< where theirs begin
+  std::ptrdiff_t         coefficient[groupSize]; ///< where the coefficients of each tetrahedron begin
+  int                    nextCount;              ///< tetrahedra of the next group, whose coefficients are fetched
+  std::ptrdiff_t         next[groupSize];        ///< where their coefficients begin
 };
 
-/** Sums over the pixels, of which the band holds the weights. */
+/** The task of Kernels::adjoin: sums over the pixels, whose weights the band holds. */
 struct Adjoint
 {
   double * basis[groupSize];     ///< of each cell: weight times integral of each Bernstein polynomial; not scaled
   double * positions[groupSize]; ///< of each cell, or all null: 4 vertices x 3, by their displacements
 };
 
-/** Those of a group take 1..groupSize tetrahedra of one degree and fill up what is beyond `count`. */
+/** The kernels of one instruction set. Kernels that take a group take 1..groupSize tetrahedra of one degree and fill
+ * the group up beyond `count`. */
 struct Kernels
 {
   /** Replaces a block's Bernstein coefficients by their expansions, see bonePowerKernel.hxx. */
@@ -117,7 +118,7 @@ extern const Kernels avx2Kernels;
 extern const Kernels avx512Kernels;
 #endif
 
-/** The fastest ones that this processor can run. */
+/** The fastest kernels that this processor can run. */
 const Kernels &
 SelectKernels(bool portable);
 } // namespace projection

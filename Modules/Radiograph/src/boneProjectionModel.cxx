@@ -29,7 +29,7 @@ Spread(std::uint32_t x)
 /** The tetrahedra along a Morton curve through a grid that has about as many cubes as there are tetrahedra, so that
  * those that follow each other are near each other; in a cube by their numbers. */
 std::vector<std::int32_t>
-SortBySpace(const std::vector<Vector3> & points, const MeshArrays & cells, const ParallelFor & parallelFor)
+SortBySpace(const std::vector<Vector3> & points, const MeshArrays & cells, const Execution & execution)
 {
   const std::size_t count = cells.tetrahedra.size();
   Vector3           low = Vector3::Constant(std::numeric_limits<double>::max()), high = -low;
@@ -45,12 +45,13 @@ SortBySpace(const std::vector<Vector3> & points, const MeshArrays & cells, const
   }
   const double extent = (high - low).maxCoeff(), scale = extent > 0 ? 0.25 * ((1 << bits) - 1) / extent : 0.0;
   std::vector<std::uint32_t> key(count);
-  ForEachInBlocks(parallelFor, count, [&](std::size_t t) {
+  const auto                 setKey = [&](std::size_t t) {
     const Id4 &   v = cells.tetrahedra[t];
     const Vector3 x = scale * (points[v[0]] + points[v[1]] + points[v[2]] + points[v[3]] - 4.0 * low);
     key[t] = Spread(static_cast<std::uint32_t>(x[0])) | Spread(static_cast<std::uint32_t>(x[1])) << 1 |
              Spread(static_cast<std::uint32_t>(x[2])) << 2;
-  });
+  };
+  execution.For(count, setKey, loopChunk);
   std::vector<std::uint32_t> start((std::size_t{ 1 } << (3 * bits)) + 1, 0);
   for (std::uint32_t k : key)
   {
@@ -72,17 +73,17 @@ ProjectionModel::Blocks::CoefficientsSize() const
   return static_cast<std::size_t>(BernsteinCount(degree) + 1) * size;
 }
 
-ProjectionModel::ProjectionModel(const std::vector<Vector3> &  points,
-                                 const MeshArrays &            cells,
-                                 const MeshRadiographOptions & options,
-                                 const ParallelFor &           parallelFor,
-                                 bool                          keep)
+ProjectionModel::ProjectionModel(const std::vector<Vector3> &     points,
+                                 const MeshArrays &               cells,
+                                 const MeshRadiographParameters & parameters,
+                                 const Execution &                execution,
+                                 bool                             keep)
   : m_Points(points)
   , m_Cells(cells)
-  , m_Options(options)
+  , m_Parameters(parameters)
 {
-  SetCells(SortBySpace(points, cells, parallelFor));
-  constexpr std::size_t atOnce = 128;
+  SetCells(SortBySpace(points, cells, execution));
+  constexpr std::size_t chunk = 128;
   for (Blocks & blocks : m_Blocks)
   {
     const std::size_t count = (blocks.cells.size() + Blocks::size - 1) / Blocks::size,
@@ -95,23 +96,21 @@ ProjectionModel::ProjectionModel(const std::vector<Vector3> &  points,
       blocks.vertices.resize(count * Blocks::verticesSize);
       blocks.coefficients.resize(count * perBlock);
     }
-    parallelFor((count + atOnce - 1) / atOnce, [&](std::size_t part) {
-      for (std::size_t b = part * atOnce; b < std::min(count, (part + 1) * atOnce); ++b)
+    const auto set = [&](std::size_t b) {
+      SetBox(blocks, b);
+      if (keep)
       {
-        SetBox(blocks, b);
-        if (keep)
-        {
-          Fill(blocks, b, &blocks.vertices[b * Blocks::verticesSize], &blocks.coefficients[b * perBlock]);
-        }
+        Fill(blocks, b, &blocks.vertices[b * Blocks::verticesSize], &blocks.coefficients[b * perBlock]);
       }
-    });
+    };
+    execution.For(count, set, chunk);
   }
 }
 
 void
 ProjectionModel::SetCells(const std::vector<std::int32_t> & sorted)
 {
-  const CellDensity density(m_Cells, m_Options);
+  const CellDensity density(m_Cells, m_Parameters);
   std::vector<int>  place(MaximumBernsteinDegree + 1, -1); // of each degree's blocks
   for (std::int32_t t : sorted)
   {
@@ -150,7 +149,7 @@ ProjectionModel::SetBox(Blocks & blocks, std::size_t block) const
 void
 ProjectionModel::Fill(const Blocks & blocks, std::size_t block, double * vertices, float * coefficients) const
 {
-  const CellDensity          density(m_Cells, m_Options);
+  const CellDensity          density(m_Cells, m_Parameters);
   const std::size_t          count = BernsteinCount(blocks.degree);
   const std::int32_t * const cells = &blocks.cells[block * Blocks::size];
   for (int g = 0; g < Blocks::size; ++g)
@@ -169,12 +168,12 @@ ProjectionModel::Fill(const Blocks & blocks, std::size_t block, double * vertice
     float                largest = 0.0f;
     for (std::size_t p = 0; p < count; ++p)
     {
-      const auto value = static_cast<float>(m_Options.scale * from[p] + m_Options.offset);
+      const auto value = static_cast<float>(m_Parameters.scale * from[p] + m_Parameters.offset);
       coefficients[p * Blocks::size + g] = value;
       largest = std::max(largest, std::abs(value));
     }
     coefficients[count * Blocks::size + g] = largest;
   }
-  projection::SelectKernels(m_Options.portable).expand(blocks.degree, coefficients);
+  projection::SelectKernels(m_Parameters.portable).expand(blocks.degree, coefficients);
 }
 } // namespace bone

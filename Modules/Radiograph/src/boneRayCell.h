@@ -16,7 +16,7 @@ struct AffineBarycentric
   Eigen::Vector4d             constant;
   Eigen::Matrix<double, 4, 3> gradient;
 
-  /** False for a flat tetrahedron. */
+  /** Returns false for a flat tetrahedron. */
   bool
   Set(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d);
 
@@ -32,13 +32,13 @@ using CellLines = std::array<RayFrame::DepthLine, 4>;
 CellLines
 RestrictToRays(const RayFrame & frame, const AffineBarycentric & mu);
 
-/** Density coefficients and what is to be integrated of them. */
+/** The density coefficients of a mesh, and the integrals of the selected tetrahedra. */
 class CellDensity
 {
 public:
-  CellDensity(const MeshArrays & cells, const MeshRadiographOptions & options)
+  CellDensity(const MeshArrays & cells, const MeshRadiographParameters & parameters)
     : m_Cells(cells)
-    , m_Options(options)
+    , m_Parameters(parameters)
     , m_Stride(BernsteinCount(cells.maximumDegree))
   {}
 
@@ -46,14 +46,14 @@ public:
   IsSelected(std::size_t t) const
   {
     return m_Cells.region.empty() ||
-           (m_Cells.region[t] >= m_Options.minimumRegion && m_Cells.region[t] <= m_Options.maximumRegion);
+           (m_Cells.region[t] >= m_Parameters.minimumRegion && m_Cells.region[t] <= m_Parameters.maximumRegion);
   }
   const double *
   Coefficients(std::size_t t) const
   {
     return m_Cells.coefficients.data() + t * m_Stride;
   }
-  /** From one tetrahedron's coefficients to the next. */
+  /** Numbers from the first coefficient of one tetrahedron to that of the next. */
   std::size_t
   Stride() const
   {
@@ -64,18 +64,18 @@ public:
   {
     return m_Cells.degree[t];
   }
-  /** Integral over a segment of the ray, both ends by their depth, in density units times mm. */
+  /** Integral over a segment of the ray, whose length is in mm, in density units times mm. */
   double
   Integrate(std::size_t t, const Barycentric & entry, const Barycentric & exit, double length) const
   {
-    return m_Options.scale * BernsteinSegmentIntegral(Degree(t), Coefficients(t), entry, exit, length) +
-           m_Options.offset * length;
+    return m_Parameters.scale * BernsteinSegmentIntegral(Degree(t), Coefficients(t), entry, exit, length) +
+           m_Parameters.offset * length;
   }
 
 private:
-  const MeshArrays &            m_Cells;
-  const MeshRadiographOptions & m_Options;
-  std::size_t                   m_Stride;
+  const MeshArrays &               m_Cells;
+  const MeshRadiographParameters & m_Parameters;
+  std::size_t                      m_Stride;
 };
 
 /** A run of columns of one row, narrowed by conditions that are affine in the column. */

@@ -1,8 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// What all derivatives of a cell along a ray are made of, compiled like boneProjectionKernel.hxx, which see for the
-// cell's frame.
+// The terms of which all derivatives of a cell along a ray are sums. It is compiled like boneProjectionKernel.hxx,
+// which describes a cell's frame.
 //
 // A cell's integral is linear in its Bernstein coefficients: the terms of the basis are the integrals of the products
 // of barycentric coordinates mu. Its derivative by displacements of the vertices is linear in these: twelve terms. With

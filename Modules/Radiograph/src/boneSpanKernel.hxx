@@ -1,12 +1,13 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Cells of few pixels, compiled like boneProjectionKernel.hxx, which see for the cell's frame.
+// Cells of few pixels. It is compiled like boneProjectionKernel.hxx, which describes a cell's frame.
 //
 // Most cells of a bone cover some forty pixels, in rows of four or five: too few to fill lanes that lie side by side in
 // the image. So the pixels of a cell are listed row after row (spans), computed from the list, and added to the image
-// row by row. Each of these steps is done for a block of cells before the next begins, so that what is read was written
-// long enough ago. Always inlined: called, GCC 12 takes SetRows for a function without effects and leaves the call out.
+// row by row. Each of these steps is done for a block of cells before the next begins, so that no number is read
+// right after it is written. Always inlined: called, GCC 12 takes SetRows for a function without effects and leaves the
+// call out.
 
 #include "boneTileKernel.hxx"
 

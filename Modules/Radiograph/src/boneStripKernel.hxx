@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Cells of many pixels or of high degree, compiled like boneProjectionKernel.hxx, which see for the cell's frame.
+// Cells of many pixels or of high degree. It is compiled like boneProjectionKernel.hxx, which describes a cell's frame.
 //
 // A cell is filled by strips of eight columns: a lane keeps its column from row to row, so that the polynomial is
 // reduced to one in (eta, z) a lane once a strip, and a row takes some forty instructions without branches. What a row

@@ -143,10 +143,10 @@ VoxelProjector::Integrate(int column, int row) const
 } // namespace
 
 void
-ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const LoopRunner & loops, float * image)
+ProjectVoxels(const VoxelVolume & grid, const XRayGeometry::View & view, const Execution & execution, float * image)
 {
   const VoxelProjector projector(grid, view);
-  loops.draw(view.size[1], [&](std::size_t row) {
+  execution.For(view.size[1], [&](std::size_t row) {
     for (int column = 0; column < view.size[0]; ++column)
     {
       image[row * view.size[0] + column] = static_cast<float>(projector.Integrate(column, static_cast<int>(row)));

@@ -4,6 +4,7 @@
 #include "boneDRRAdjointFilter.h"
 #include "boneDRRDerivativeImageFilter.h"
 
+#include "boneProgressWatch.h"
 #include "boneRadiographTestMeshes.h"
 
 #include <gmock/gmock.h>
@@ -108,13 +109,7 @@ TEST(DRRDerivativeImageFilter, WritesTheKernelsImagesInTheViewsPlace)
   {
     pointers.push_back(image.data());
   }
-  const auto loop = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      body(i);
-    }
-  };
-  ProjectMeshDerivatives(arrays.points, arrays, filter->GetGeometry()->GetView(), {}, modes, { loop, loop }, pointers);
+  ProjectMeshDerivatives(arrays.points, arrays, filter->GetGeometry()->GetView(), {}, modes, Execution(), pointers);
   ASSERT_EQ(filter->GetNumberOfIndexedOutputs(), 9u);
   for (unsigned int i = 0; i < 9; ++i)
   {
@@ -161,7 +156,7 @@ TEST(DRRDerivativeImageFilter, RefusesModesThatDoNotFit)
   ExpectRefusal(filter.GetPointer(), "Density mode 0");
   filter->SetModes({});
   filter->SetMethod(DRRMethod::Walk);
-  ExpectRefusal(filter.GetPointer(), "Method is Walk");
+  ExpectRefusal(filter.GetPointer(), "Method is walk");
   filter->SetMethod(DRRMethod::Projection);
   filter->SetGeometry(1, Look(front));
   ExpectRefusal(filter.GetPointer(), "second view");
@@ -255,4 +250,47 @@ TEST(DRRAdjointFilter, RefusesWhatDoesNotFit)
   filter->SetImage(1, MakeImage(geometry, 1));
   filter->SetHUToAttenuation(HUToAttenuation::Bilinear);
   ExpectRefusal(filter.GetPointer(), "no line");
+}
+
+TEST(DRRDerivativeImageFilter, ReportsProgressThatDoesNotFallAndStopsOnAbort)
+{
+  const auto arrays = Arrays();
+  auto       filter = Forward::New();
+  filter->SetInput(MakeMesh(arrays));
+  filter->SetGeometry(Look(front));
+  filter->SetModes(Modes(arrays));
+  filter->SetNumberOfWorkUnits(1);
+  const test::ProgressWatch watch(filter);
+  filter->Update();
+  EXPECT_FALSE(watch.falls);
+  EXPECT_EQ(watch.last, 1.0f);
+  EXPECT_GE(watch.steps, 10);
+  const auto before = Pixels(filter->GetDerivative(7));
+  filter->Modified();
+  test::ExpectUsableAfterAbort(filter);
+  EXPECT_EQ(Pixels(filter->GetDerivative(7)), before);
+}
+
+TEST(DRRAdjointFilter, ReportsProgressOfTwoViewsThatDoesNotFallAndStopsOnAbort)
+{
+  auto arrays = test::GridMesh({ { 10, 10, 10 } }, lower, Vector3(4, 3, 2.4), 0.2); // several chunks of cells
+  test::SetRandom(arrays, 3, 4);
+  auto filter = Backward::New();
+  filter->SetInput(MakeMesh(arrays));
+  for (unsigned int view = 0; view < 2; ++view)
+  {
+    const auto geometry = Look(view == 0 ? front : Vector3(Vector3::UnitX()));
+    filter->SetImage(view, MakeImage(geometry, 1));
+    filter->SetGeometry(view, geometry);
+  }
+  filter->SetNumberOfWorkUnits(1);
+  const test::ProgressWatch watch(filter);
+  filter->Update();
+  EXPECT_FALSE(watch.falls);
+  EXPECT_EQ(watch.last, 1.0f);
+  EXPECT_GE(watch.steps, 10);
+  const auto before = filter->GetOutput()->GetCells().coefficients;
+  filter->Modified();
+  test::ExpectUsableAfterAbort(filter);
+  EXPECT_EQ(filter->GetOutput()->GetCells().coefficients, before);
 }

@@ -3,11 +3,11 @@
  *=========================================================================*/
 #include "boneDRRImageFilter.h"
 
+#include "boneProgressWatch.h"
 #include "boneRadiographTestMeshes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <itkCommand.h>
 
 namespace
 {
@@ -108,15 +108,9 @@ TEST(DRRImageFilter, WritesTheKernelsIntegrals)
   const auto arrays = BoxArrays();
   const auto filter = MakeFilter(arrays);
   filter->Update();
-  const auto loop = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      body(i);
-    }
-  };
   const auto         pixels = Pixels(filter->GetOutput());
   std::vector<float> expected(pixels.size());
-  ProjectMesh(arrays.points, arrays, filter->GetGeometry()->GetView(), {}, { loop, loop }, expected.data());
+  ProjectMesh(arrays.points, arrays, filter->GetGeometry()->GetView(), {}, Execution(), expected.data());
   EXPECT_EQ(pixels, expected);
 }
 
@@ -209,7 +203,7 @@ TEST(DRRImageFilter, AGeometryOrMeshEditedInPlaceRunsIt)
   EXPECT_EQ(counter.runs, 3);
 }
 
-TEST(DRRImageFilter, WhatItKeepsIsOfTheMeshAndOptionsThatItHas)
+TEST(DRRImageFilter, WhatItKeepsIsOfTheMeshAndParametersThatItHas)
 {
   // Each change alone, after a run that has kept the model; a filter that is new knows none.
   const auto filter = MakeFilter();
@@ -329,27 +323,28 @@ TEST(DRRImageFilter, RefusesWhatItCannotProject)
 
 TEST(DRRImageFilter, ReportsProgressThatDoesNotFallAndStopsOnAbort)
 {
-  const auto filter = MakeFilter();
-  float      last = 0;
-  bool       falls = false;
-  filter->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) {
-    falls = falls || filter->GetProgress() < last;
-    last = filter->GetProgress();
-  });
-  filter->Update();
-  EXPECT_FALSE(falls);
-  EXPECT_EQ(last, 1.0f);
-
-  const auto aborted = MakeFilter();
-  aborted->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) { aborted->AbortGenerateDataOn(); });
-  EXPECT_THROW(aborted->Update(), itk::ProcessAborted);
+  for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
+  {
+    const auto filter = MakeFilter();
+    filter->SetGeometry(1, MakeGeometry());
+    filter->SetMethod(method);
+    filter->SetNumberOfWorkUnits(1); // other threads do not report
+    const test::ProgressWatch watch(filter);
+    filter->Update();
+    EXPECT_FALSE(watch.falls);
+    EXPECT_EQ(watch.last, 1.0f);
+    const auto before = Pixels(filter->GetOutput());
+    filter->Modified();
+    test::ExpectUsableAfterAbort(filter);
+    EXPECT_EQ(Pixels(filter->GetOutput()), before);
+  }
 }
 
 TEST(DRRImageFilter, PrintsItsParameters)
 {
   std::ostringstream text;
   MakeFilter()->Print(text);
-  for (const char * name : { "Method: Projection", "HUToAttenuation: None", "MinimumRegion" })
+  for (const char * name : { "Method: projection", "HUToAttenuation: none", "MinimumRegion" })
   {
     EXPECT_THAT(text.str(), testing::HasSubstr(name));
   }

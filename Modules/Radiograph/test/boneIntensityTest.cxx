@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <itkImage.h>
+#include <itkStreamingImageFilter.h>
 
 #include <numeric>
 
@@ -32,7 +33,73 @@ Pixels(const Image * image)
 {
   return { image->GetBufferPointer(), image->GetBufferPointer() + image->GetBufferedRegion().GetNumberOfPixels() };
 }
+/** An image of different values from `first` on. */
+Image::Pointer
+MakeRamp(float first, float step)
+{
+  auto image = MakeImage(30, 20, 0);
+  for (std::size_t i = 0; i < 600; ++i)
+  {
+    image->GetBufferPointer()[i] = first + static_cast<float>(i) * step;
+  }
+  return image;
+}
+
+/** The filter's pixels, asked for in so many pieces. */
+template <typename TFilter>
+std::vector<float>
+Stream(TFilter * filter, Image * input, unsigned int pieces)
+{
+  unsigned int runs = 0;
+  const auto   tag = filter->AddObserver(itk::StartEvent(), [&runs](const itk::EventObject &) { ++runs; });
+  auto         streaming = itk::StreamingImageFilter<Image, Image>::New();
+  filter->SetInput(input);
+  filter->Modified();
+  streaming->SetInput(filter->GetOutput());
+  streaming->SetNumberOfStreamDivisions(pieces);
+  streaming->Update();
+  filter->RemoveObserver(tag);
+  EXPECT_EQ(runs, pieces);
+  return Pixels(streaming->GetOutput());
+}
+
+template <typename TFilter>
+void
+ExpectSameWhenStreamed(TFilter * filter, const std::function<Image::Pointer()> & makeInput)
+{
+  for (bool inPlace : { false, true })
+  {
+    if (auto * inPlaceFilter = dynamic_cast<itk::InPlaceImageFilter<Image, Image> *>(filter))
+    {
+      inPlaceFilter->SetInPlace(inPlace);
+    }
+    const auto whole = Stream(filter, makeInput(), 1), pieces = Stream(filter, makeInput(), 4);
+    EXPECT_EQ(whole, pieces) << "in place: " << inPlace;
+    EXPECT_NE(whole.front(), whole.back());
+  }
+}
 } // namespace
+
+TEST(AttenuationImageFilter, HasTheSamePixelsWhenStreamed)
+{
+  auto filter = AttenuationImageFilter<Image>::New();
+  filter->SetHUToAttenuation(HUToAttenuation::Bilinear);
+  ExpectSameWhenStreamed(filter.GetPointer(), [] { return MakeRamp(-900, 4); });
+}
+
+TEST(IntensityImageFilter, HasTheSamePixelsWhenStreamed)
+{
+  auto filter = IntensityImageFilter<Image>::New();
+  filter->SetIncidentIntensity(1000);
+  ExpectSameWhenStreamed(filter.GetPointer(), [] { return MakeRamp(0, 0.01f); });
+}
+
+TEST(NoiseImageFilter, HasTheSamePixelsWhenStreamed)
+{
+  auto filter = NoiseImageFilter<Image>::New();
+  filter->SetElectronicNoise(0.5);
+  ExpectSameWhenStreamed(filter.GetPointer(), [] { return MakeRamp(10, 1); });
+}
 
 TEST(AttenuationCurve, PassesThroughAirAndWaterAndRises)
 {
@@ -40,7 +107,7 @@ TEST(AttenuationCurve, PassesThroughAirAndWaterAndRises)
   EXPECT_EQ(curve.At(-234), -234);
   for (auto conversion : { HUToAttenuation::WaterScaled, HUToAttenuation::Bilinear })
   {
-    curve.conversion = conversion;
+    curve.huToAttenuation = conversion;
     EXPECT_EQ(curve.At(-1000), 0);
     EXPECT_EQ(curve.At(-3000), 0);
     EXPECT_DOUBLE_EQ(curve.At(0), WaterAttenuationAt60keV);
@@ -52,7 +119,7 @@ TEST(AttenuationCurve, PassesThroughAirAndWaterAndRises)
 TEST(AttenuationCurve, ATableIsLinearBetweenItsPointsAndConstantBeyond)
 {
   AttenuationCurve curve;
-  curve.conversion = HUToAttenuation::Table;
+  curve.huToAttenuation = HUToAttenuation::Table;
   curve.table = { { -1000, 0 }, { 0, 0.02 }, { 1000, 0.05 } };
   EXPECT_EQ(curve.At(-2000), 0);
   EXPECT_DOUBLE_EQ(curve.At(-500), 0.01);
@@ -67,13 +134,17 @@ TEST(AttenuationImageFilter, ConvertsVoxels)
   auto filter = AttenuationImageFilter<Image>::New();
   filter->SetInput(MakeImage(3, 2, 800));
   AttenuationCurve curve;
-  curve.conversion = HUToAttenuation::Bilinear;
-  filter->SetCurve(curve);
+  curve.huToAttenuation = HUToAttenuation::Bilinear;
+  filter->SetHUToAttenuation(HUToAttenuation::Bilinear);
   filter->Update();
   EXPECT_FLOAT_EQ(Pixels(filter->GetOutput())[4], static_cast<float>(curve.At(800)));
-  curve.conversion = HUToAttenuation::Table;
-  filter->SetCurve(curve);
+  filter->SetHUToAttenuation(HUToAttenuation::Table);
   EXPECT_THROW(filter->Update(), itk::ExceptionObject);
+  filter->SetAttenuationTable({ { 0, 0.02 }, { -1000, 0 } });
+  EXPECT_THROW(filter->Update(), itk::ExceptionObject);
+  filter->SetAttenuationTable({ { -1000, 0 }, { 1000, 0.05 } });
+  filter->Update();
+  EXPECT_FLOAT_EQ(Pixels(filter->GetOutput())[4], 0.045f);
 }
 
 TEST(IntensityImageFilter, IsBeerAndLamberts)

@@ -14,15 +14,7 @@ namespace
 using namespace bone;
 using View = XRayGeometry::View;
 
-void
-InOrder(std::size_t count, const std::function<void(std::size_t)> & body)
-{
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    body(i);
-  }
-}
-const LoopRunner loops{ InOrder, InOrder };
+const Execution execution;
 
 MeshArrays
 Staircase(int degree, bool mixed)
@@ -60,10 +52,10 @@ Look(bool parallel, const Vector3 & source = Vector3(-60, -300, -40))
 
 /** In double precision, by clipping each ray with each tetrahedron. */
 std::vector<double>
-Reference(const std::vector<Vector3> &  points,
-          const MeshArrays &            mesh,
-          const View &                  view,
-          const MeshRadiographOptions & options)
+Reference(const std::vector<Vector3> &     points,
+          const MeshArrays &               mesh,
+          const View &                     view,
+          const MeshRadiographParameters & parameters)
 {
   const auto          rays = RayFrame::Displaced(view);
   const std::size_t   stride = BernsteinCount(mesh.maximumDegree);
@@ -86,15 +78,15 @@ Reference(const std::vector<Vector3> &  points,
           (step[i] > 0 ? first : last) =
             step[i] > 0 ? std::max(first, -start[i] / step[i]) : std::min(last, -start[i] / step[i]);
         }
-        if (first < last && mesh.region[t] >= options.minimumRegion)
+        if (first < last && mesh.region[t] >= parameters.minimumRegion)
         {
           const double length = (last - first) * direction.norm();
-          sum +=
-            options.offset * length + options.scale * BernsteinSegmentIntegral(mesh.degree[t],
-                                                                               mesh.coefficients.data() + t * stride,
-                                                                               start + first * step,
-                                                                               start + last * step,
-                                                                               length);
+          sum += parameters.offset * length +
+                 parameters.scale * BernsteinSegmentIntegral(mesh.degree[t],
+                                                             mesh.coefficients.data() + t * stride,
+                                                             start + first * step,
+                                                             start + last * step,
+                                                             length);
         }
       }
       image.push_back(sum);
@@ -144,11 +136,14 @@ Pointers(Images & images)
 }
 
 Images
-Derive(const MeshArrays & mesh, const View & view, const RadiographModes & modes, const MeshRadiographOptions & options)
+Derive(const MeshArrays &               mesh,
+       const View &                     view,
+       const RadiographModes &          modes,
+       const MeshRadiographParameters & parameters)
 {
   const std::size_t pixels = static_cast<std::size_t>(view.size[0]) * view.size[1];
   Images            images{ std::vector<float>(pixels, -1), std::vector<float>(pixels * modes.Count(), -1) };
-  ProjectMeshDerivatives(mesh.points, mesh, view, options, modes, loops, Pointers(images));
+  ProjectMeshDerivatives(mesh.points, mesh, view, parameters, modes, execution, Pointers(images));
   return images;
 }
 
@@ -185,18 +180,18 @@ Moved(const MeshArrays & mesh, const RadiographModes & modes, std::size_t m, dou
 
 /** The 99th percentile, over the pixels hit, of the difference to central differences over the largest of these. */
 double
-DifferenceToCentral(const MeshArrays &            mesh,
-                    const View &                  view,
-                    const RadiographModes &       modes,
-                    const MeshRadiographOptions & options,
-                    std::size_t                   m,
-                    const float *                 derivative)
+DifferenceToCentral(const MeshArrays &               mesh,
+                    const View &                     view,
+                    const RadiographModes &          modes,
+                    const MeshRadiographParameters & parameters,
+                    std::size_t                      m,
+                    const float *                    derivative)
 {
   const double        step = m >= 3 && m < 6 ? 1e-6 : 1e-5;
-  const auto          here = Reference(mesh.points, mesh, view, options);
+  const auto          here = Reference(mesh.points, mesh, view, parameters);
   const auto          after = Moved(mesh, modes, m, step), before = Moved(mesh, modes, m, -step);
-  const auto          high = Reference(after.points, after, view, options);
-  const auto          low = Reference(before.points, before, view, options);
+  const auto          high = Reference(after.points, after, view, parameters);
+  const auto          low = Reference(before.points, before, view, parameters);
   std::vector<double> differences;
   double              largest = 0;
   for (std::size_t i = 0; i < here.size(); ++i)
@@ -214,12 +209,12 @@ DifferenceToCentral(const MeshArrays &            mesh,
 }
 
 void
-ExpectCentralDifferences(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+ExpectCentralDifferences(const MeshArrays & mesh, const View & view, const MeshRadiographParameters & parameters = {})
 {
   const auto        modes = RandomModes(mesh, 1);
-  const auto        images = Derive(mesh, view, modes, options);
+  const auto        images = Derive(mesh, view, modes, parameters);
   const std::size_t pixels = images.image.size();
-  const auto        expected = Reference(mesh.points, mesh, view, options);
+  const auto        expected = Reference(mesh.points, mesh, view, parameters);
   const double      largest = *std::max_element(expected.begin(), expected.end());
   for (std::size_t i = 0; i < pixels; ++i)
   {
@@ -227,7 +222,7 @@ ExpectCentralDifferences(const MeshArrays & mesh, const View & view, const MeshR
   }
   for (std::size_t m = 0; m < modes.Count(); ++m)
   {
-    EXPECT_LT(DifferenceToCentral(mesh, view, modes, options, m, images.derivatives.data() + m * pixels), 1e-3)
+    EXPECT_LT(DifferenceToCentral(mesh, view, modes, parameters, m, images.derivatives.data() + m * pixels), 1e-3)
       << "mode " << m;
   }
 }
@@ -244,11 +239,11 @@ TEST(MeshDerivatives, EqualCentralDifferencesAtAnyDegree)
 
 TEST(MeshDerivatives, EqualCentralDifferencesForAttenuationOfARegionAndMixedDegrees)
 {
-  MeshRadiographOptions options;
-  options.scale = 2e-2;
-  options.offset = 0.03;
-  options.minimumRegion = 2;
-  ExpectCentralDifferences(Staircase(4, true), Look(false), options);
+  MeshRadiographParameters parameters;
+  parameters.scale = 2e-2;
+  parameters.offset = 0.03;
+  parameters.minimumRegion = 2;
+  ExpectCentralDifferences(Staircase(4, true), Look(false), parameters);
 }
 
 TEST(MeshDerivatives, EqualCentralDifferencesWithTheSourceInsideAndTheDetectorThroughTheMesh)
@@ -282,10 +277,10 @@ TEST(MeshDerivatives, TheAdjointIsTheTranspose)
     for (bool inside : { false, true })
     {
       view.source = inside ? Vector3(-9, -9, 2) : view.source;
-      MeshRadiographOptions options;
-      options.scale = 0.7;
+      MeshRadiographParameters parameters;
+      parameters.scale = 0.7;
       const auto modes = RandomModes(mesh, 1);
-      const auto images = Derive(mesh, view, modes, options);
+      const auto images = Derive(mesh, view, modes, parameters);
 
       std::mt19937                           random(23);
       std::uniform_real_distribution<double> value(-1.0, 1.0);
@@ -293,7 +288,8 @@ TEST(MeshDerivatives, TheAdjointIsTheTranspose)
       std::generate(weights.begin(), weights.end(), [&]() { return static_cast<float>(value(random)); });
       std::vector<double>  coefficients(mesh.coefficients.size(), 7);
       std::vector<Vector3> positions(mesh.points.size());
-      BackprojectToMesh(mesh.points, mesh, view, options, loops, weights.data(), coefficients.data(), positions.data());
+      BackprojectToMesh(
+        mesh.points, mesh, view, parameters, execution, weights.data(), coefficients.data(), positions.data());
 
       const auto weigh = [&](const float * image, double & size) {
         double sum = size = 0;
@@ -334,17 +330,17 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
   const View view = Look(false);
   const auto modes = RandomModes(mesh, 2);
   const auto images = Derive(mesh, view, modes, {});
-  const auto backwards = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = count; i-- > 0;)
+  Images     other = images;
+  // Within a loop's body loops run on one thread, in order.
+  execution.For(2, [&](std::size_t i) {
+    if (i == 0)
     {
-      body(i);
+      ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, execution, Pointers(other));
     }
-  };
-  Images other = images;
-  ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, { backwards, backwards }, Pointers(other));
+  });
   EXPECT_EQ(images.derivatives, other.derivatives);
 
-  MeshRadiographOptions portable;
+  MeshRadiographParameters portable;
   portable.portable = true;
   const auto plain = Derive(mesh, view, modes, portable);
   double     largest = 0;

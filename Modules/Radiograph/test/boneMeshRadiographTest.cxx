@@ -15,32 +15,19 @@ namespace
 using namespace bone;
 using View = XRayGeometry::View;
 
-/** In order, or against it: the kernels must not mind. */
-LoopRunner
-Sequential(bool backwards = false)
-{
-  const auto loop = [backwards](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      body(backwards ? count - 1 - i : i);
-    }
-  };
-  return { loop, loop };
-}
-
 std::vector<float>
-Project(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+Project(const MeshArrays & mesh, const View & view, const MeshRadiographParameters & parameters = {})
 {
   std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1], -1.0f);
-  ProjectMesh(mesh.points, mesh, view, options, Sequential(), image.data());
+  ProjectMesh(mesh.points, mesh, view, parameters, Execution(), image.data());
   return image;
 }
 
 std::vector<float>
-Walk(const MeshArrays & mesh, const View & view, const MeshRadiographOptions & options = {})
+Walk(const MeshArrays & mesh, const View & view, const MeshRadiographParameters & parameters = {})
 {
   std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1], -1.0f);
-  WalkMesh(mesh.points, mesh, view, options, Sequential(), image.data(), nullptr);
+  WalkMesh(mesh.points, mesh, view, parameters, Execution(), image.data(), nullptr);
   return image;
 }
 
@@ -242,7 +229,7 @@ TEST(MeshRadiograph, SeveralViewsInOneCallAreThoseOfEach)
   {
     pointers.push_back(image.data());
   }
-  ProjectMesh(mesh.points, mesh, views, {}, Sequential(true), pointers);
+  ProjectMesh(mesh.points, mesh, views, {}, Execution(), pointers);
   for (std::size_t i = 0; i < views.size(); ++i)
   {
     EXPECT_EQ(images[i], Project(mesh, views[i]));
@@ -257,16 +244,16 @@ TEST(MeshRadiograph, AKeptModelGivesTheImagesOfTheMesh)
   {
     mesh.degree[t] = static_cast<decltype(mesh.degree)::value_type>(t % (MaximumBernsteinDegree + 1));
   }
-  MeshRadiographOptions options;
-  options.scale = 1.5;
-  options.offset = -0.25;
-  const ProjectionModel model(mesh.points, mesh, options, Sequential().prepare);
+  MeshRadiographParameters parameters;
+  parameters.scale = 1.5;
+  parameters.offset = -0.25;
+  const ProjectionModel model(mesh.points, mesh, parameters, Execution());
   for (const View & view : { Oblique(false), Oblique(true, 50), Oblique(false, 33) })
   {
     std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
-    ProjectMesh(model, { view }, Sequential(true), { image.data() });
-    EXPECT_EQ(image, Project(mesh, view, options));
-    EXPECT_LT(Difference(image, Walk(mesh, view, options)), 1e-5);
+    ProjectMesh(model, { view }, Execution(), { image.data() });
+    EXPECT_EQ(image, Project(mesh, view, parameters));
+    EXPECT_LT(Difference(image, Walk(mesh, view, parameters)), 1e-5);
   }
 }
 
@@ -442,19 +429,19 @@ TEST(MeshRadiograph, IsLinearInTheDensity)
   }
   EXPECT_LT(Difference(combined, expected), 1e-5);
 
-  MeshRadiographOptions options;
-  options.scale = 3;
-  options.offset = 0.25;
+  MeshRadiographParameters parameters;
+  parameters.scale = 3;
+  parameters.offset = 0.25;
   auto ones = f, scaled = f;
   test::SetConstant(ones, 0.25);
-  const auto chords = Project(ones, view), affine = Project(f, view, options);
+  const auto chords = Project(ones, view), affine = Project(f, view, parameters);
   combined = a;
   for (std::size_t i = 0; i < a.size(); ++i)
   {
     combined[i] = 3 * a[i] + chords[i];
   }
   EXPECT_LT(Difference(affine, combined), 1e-5);
-  EXPECT_LT(Difference(Walk(f, view, options), combined), 1e-5);
+  EXPECT_LT(Difference(Walk(f, view, parameters), combined), 1e-5);
 }
 
 TEST(MeshRadiograph, RegionsAddUpToTheWhole)
@@ -467,9 +454,9 @@ TEST(MeshRadiograph, RegionsAddUpToTheWhole)
     std::vector<float> sum(static_cast<std::size_t>(view.size[0]) * view.size[1], 0.0f);
     for (int region = 1; region <= 3; ++region)
     {
-      MeshRadiographOptions options;
-      options.minimumRegion = options.maximumRegion = region;
-      const auto part = method(mesh, view, options);
+      MeshRadiographParameters parameters;
+      parameters.minimumRegion = parameters.maximumRegion = region;
+      const auto part = method(mesh, view, parameters);
       EXPECT_GT(Largest(part), 0);
       std::transform(part.begin(), part.end(), sum.begin(), sum.begin(), std::plus<float>());
     }
@@ -482,12 +469,21 @@ TEST(MeshRadiograph, DoesNotDependOnTheOrderOfWork)
   auto mesh = Staircase();
   test::SetRandom(mesh, 4, 5);
   const View         view = Oblique(false, 150);
-  auto               projected = Project(mesh, view), walked = Walk(mesh, view);
-  std::vector<float> image(projected.size());
-  ProjectMesh(mesh.points, mesh, view, {}, Sequential(true), image.data());
-  EXPECT_EQ(image, projected);
-  WalkMesh(mesh.points, mesh, view, {}, Sequential(true), image.data(), nullptr);
-  EXPECT_EQ(image, walked);
+  const auto         projected = Project(mesh, view), walked = Walk(mesh, view);
+  std::vector<float> alone(projected.size()), walkedAlone(projected.size());
+  // Within a loop's body loops run on one thread, in order.
+  Execution().For(2, [&](std::size_t i) {
+    if (i == 0)
+    {
+      ProjectMesh(mesh.points, mesh, view, {}, Execution(), alone.data());
+    }
+    else
+    {
+      WalkMesh(mesh.points, mesh, view, {}, Execution(), walkedAlone.data(), nullptr);
+    }
+  });
+  EXPECT_EQ(alone, projected);
+  EXPECT_EQ(walkedAlone, walked);
 }
 
 TEST(MeshRadiograph, WalkAndProjectionAgreeFromAnywhere)
@@ -546,9 +542,9 @@ TEST(MeshRadiograph, CellsAtAnyDistanceFromTheSourceKeepTheirAccuracy)
     {
       View view = XRayGeometry::Framing(
         lower, upper, Vector3(0.4, 1, 0.2).normalized(), Vector3(0.1, 0.2, 1), distance, distance + 100, 15);
-      const ProjectionModel model(mesh.points, mesh, {}, Sequential().prepare);
+      const ProjectionModel model(mesh.points, mesh, {}, Execution());
       std::vector<float>    image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
-      ProjectMesh(model, { view }, Sequential(), { image.data() });
+      ProjectMesh(model, { view }, Execution(), { image.data() });
       EXPECT_LT(Difference(image, Walk(mesh, view)), 3e-6) << distance << ' ' << seed;
     }
   }
@@ -585,15 +581,15 @@ TEST(MeshRadiograph, CellsOfOneRowAndManyColumnsOrTheReverseKeepTheirAccuracy)
   }
   for (bool portable : { false, true })
   {
-    MeshRadiographOptions options;
-    options.portable = portable;
+    MeshRadiographParameters parameters;
+    parameters.portable = portable;
     for (int columns : { 500, 700, 2, 3 })
     {
       View      view = Oblique(false, 64);
       const int rows = columns > 3 ? 2 : 600;
       view.spacing = { view.spacing.x() * view.size[0] / columns, view.spacing.y() * view.size[1] / rows };
       view.size = { { columns, rows } };
-      EXPECT_LT(Difference(Project(mesh, view, options), Walk(mesh, view)), 1e-5) << columns << ' ' << portable;
+      EXPECT_LT(Difference(Project(mesh, view, parameters), Walk(mesh, view)), 1e-5) << columns << ' ' << portable;
     }
   }
 }
@@ -602,7 +598,7 @@ TEST(MeshRadiograph, TheProcessorsNewerInstructionsChangeRoundingOnly)
 {
   auto mesh = Staircase();
   test::SetRandom(mesh, MaximumBernsteinDegree, 9);
-  MeshRadiographOptions portable;
+  MeshRadiographParameters portable;
   portable.portable = true;
   for (bool parallel : { false, true })
   {
@@ -641,7 +637,7 @@ TEST(MeshRadiograph, CountsTheCellsPassed)
   view.size = { { 60, 30 } };
   std::vector<float>        image(1800);
   std::vector<std::int32_t> passed(1800);
-  WalkMesh(mesh.points, mesh, view, {}, Sequential(), image.data(), passed.data());
+  WalkMesh(mesh.points, mesh, view, {}, Execution(), image.data(), passed.data());
   for (int i = 0; i < 1800; ++i)
   {
     EXPECT_EQ(passed[i], i % 60 < 39 ? 18 : 0) << "three tetrahedra of a Kuhn cube lie on each of its straight rays";

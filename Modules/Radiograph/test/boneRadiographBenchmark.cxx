@@ -9,30 +9,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <atomic>
-#include <thread>
-
 namespace
 {
 using namespace bone;
 
-/** Two threads that take the next piece of work. */
-void
-OnTwoThreads(std::size_t count, const std::function<void(std::size_t)> & body)
-{
-  std::atomic<std::size_t> next{ 0 };
-  const auto               work = [&]() {
-    for (std::size_t i = next++; i < count; i = next++)
-    {
-      body(i);
-    }
-  };
-  std::thread other(work);
-  work();
-  other.join();
-}
-
-const LoopRunner loops{ OnTwoThreads, OnTwoThreads };
+const Execution execution;
 
 /** A bone-sized block of about `cells` jittered tetrahedra with a smooth density of the degree. */
 MeshArrays
@@ -59,14 +40,14 @@ Projection(benchmark::State & state)
 {
   const auto            mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const auto            view = FramedView();
-  const ProjectionModel model(mesh.points, mesh, {}, loops.prepare);
+  const ProjectionModel model(mesh.points, mesh, {}, execution);
   std::vector<float>    image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
   for (auto _ : state)
   {
-    ProjectMesh(model, { view }, loops, { image.data() });
+    ProjectMesh(model, { view }, execution, { image.data() });
   }
   std::vector<std::int32_t> passed(image.size());
-  WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), passed.data());
+  WalkMesh(mesh.points, mesh, view, {}, execution, image.data(), passed.data());
   double intervals = 0;
   for (int count : passed)
   {
@@ -86,7 +67,7 @@ ProjectionOnce(benchmark::State & state)
   std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
   for (auto _ : state)
   {
-    ProjectMesh(mesh.points, mesh, view, {}, loops, image.data());
+    ProjectMesh(mesh.points, mesh, view, {}, execution, image.data());
   }
 }
 
@@ -112,7 +93,7 @@ Derivatives(benchmark::State & state)
   }
   for (auto _ : state)
   {
-    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, loops, pointers);
+    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, execution, pointers);
   }
 }
 
@@ -126,7 +107,7 @@ Backprojection(benchmark::State & state)
   std::vector<bone::Vector3> positions(mesh.points.size());
   for (auto _ : state)
   {
-    BackprojectToMesh(mesh.points, mesh, view, {}, loops, image.data(), coefficients.data(), positions.data());
+    BackprojectToMesh(mesh.points, mesh, view, {}, execution, image.data(), coefficients.data(), positions.data());
   }
 }
 
@@ -138,7 +119,7 @@ Walk(benchmark::State & state)
   std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
   for (auto _ : state)
   {
-    WalkMesh(mesh.points, mesh, view, {}, loops, image.data(), nullptr);
+    WalkMesh(mesh.points, mesh, view, {}, execution, image.data(), nullptr);
   }
 }
 /** A voxel image of about the same body: 20 million voxels, as a clinical CT of a hip has. */
@@ -154,7 +135,7 @@ Voxels(benchmark::State & state)
   std::vector<float> image(static_cast<std::size_t>(view.size[0]) * view.size[1]);
   for (auto _ : state)
   {
-    ProjectVoxels(grid, view, loops, image.data());
+    ProjectVoxels(grid, view, execution, image.data());
   }
 }
 } // namespace

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneVoxelDRRImageFilter.h"
 
+#include "boneProgressWatch.h"
 #include "boneRadiographTestMeshes.h"
 
 #include <Eigen/Geometry>
@@ -296,4 +297,23 @@ TEST(VoxelDRRImageFilter, RefusesAMaskOnAnotherGrid)
   {
     EXPECT_THAT(error.what(), testing::HasSubstr("different grids"));
   }
+}
+
+TEST(VoxelDRRImageFilter, ReportsProgressOfTwoViewsThatDoesNotFallAndStopsOnAbort)
+{
+  auto filter = Filter::New();
+  filter->SetInput(MakeImage<Image>([](const Vector3 & i) { return std::sin(i[0]) + i[1] * i[2]; }));
+  filter->SetGeometry(Look(beams[0]));
+  filter->SetGeometry(1, Look(beams[1]));
+  filter->SetNumberOfWorkUnits(1);
+  const test::ProgressWatch watch(filter);
+  filter->Update();
+  EXPECT_FALSE(watch.falls);
+  EXPECT_EQ(watch.last, 1.0f);
+  EXPECT_GE(watch.steps, 10);
+  const auto               count = filter->GetOutput()->GetBufferedRegion().GetNumberOfPixels();
+  const std::vector<float> before(Pixels(filter), Pixels(filter) + count);
+  filter->Modified();
+  test::ExpectUsableAfterAbort(filter);
+  EXPECT_EQ(std::vector<float>(Pixels(filter), Pixels(filter) + count), before);
 }
