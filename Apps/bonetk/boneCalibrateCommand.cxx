@@ -161,11 +161,11 @@ Run(const Options & options, Session & session)
   filter->SetInput(ReadDensityMesh(options.mesh));
   if (!options.line.empty())
   {
-    filter->SetLine(options.line[0], options.line[1], ParseDensityQuantity(options.to));
+    filter->SetLine(options.line[0], options.line[1], ParseChoice<DensityQuantity>(options.to));
   }
   else if (!options.references.empty())
   {
-    UseReferences(options, ParseDensityQuantity(options.to), *filter);
+    UseReferences(options, ParseChoice<DensityQuantity>(options.to), *filter);
   }
   filter->SetLaws(options.laws);
   filter->Update();

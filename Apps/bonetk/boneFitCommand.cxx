@@ -132,7 +132,7 @@ Run(const Options & options, Session & session)
   fit->SetSurfaceMargin(options.surfaceMargin);
   fit->SetInterfaceMargin(options.interfaceMargin);
   fit->SetMaximumError(options.maximumError);
-  fit->SetQuantity(ParseDensityQuantity(options.quantity));
+  fit->SetQuantity(ParseChoice<DensityQuantity>(options.quantity));
   session.Watch(fit, "density fit");
   fit->Update();
   if (fit->GetReport().unsupported > 0)

@@ -259,7 +259,7 @@ ParametersOf(const Eigen::MatrixXd & factors, Eigen::Index i)
   p.wingRadius += 12 * factors(i, 1);
   p.inclination += 4 * factors(i, 2);
   p.corticalDensity += 50 * factors(i, 3);
-  p.spongyDensity += 25 * factors(i, 4);
+  p.trabecularDensity += 25 * factors(i, 4);
   return p;
 }
 

@@ -4,6 +4,7 @@
 #ifndef boneCubicSampler_h
 #define boneCubicSampler_h
 
+#include "boneExecution.h"
 #include "boneVoxelGrid.h"
 
 #include <cmath>
@@ -23,7 +24,7 @@ class CubicSampler
 public:
   /** `values`: the voxels, first axis fastest; becomes the spline's coefficients. Throws std::invalid_argument where
    * their number is not that of the size. */
-  CubicSampler(std::vector<float> values, const std::array<int, 3> & size);
+  CubicSampler(std::vector<float> values, const std::array<int, 3> & size, const Execution & execution = Execution());
 
   double
   operator()(const Vector3 & index) const;

@@ -44,7 +44,7 @@ struct DensityLaw
  * femora by Keyak et al.
  * - keyak2005: ash = 0.0633 + 0.887 HA (g/cm^3); J. H. Keyak et al., Clin Orthop Relat Res 437:219-228, 2005.
  * - schileo2008: apparent = ash / 0.598; E. Schileo et al., J Biomech 41:2483-2491, 2008,
- *   doi:10.1016/j.jbiomech.2008.05.017: one ratio from spongy to cortical bone.
+ *   doi:10.1016/j.jbiomech.2008.05.017: one ratio from trabecular to cortical bone.
  *
  * Their ranges are what bone holds, from marrow without mineral to the densest cortical bone. */
 const std::vector<DensityLaw> &
@@ -53,10 +53,6 @@ PublishedDensityLaws();
 /** The published law of that name; std::invalid_argument, which lists the names, where there is none. */
 const DensityLaw &
 FindDensityLaw(const std::string & name);
-
-/** The quantity of a short name: hu, k2hpo4, ha, ash, apparent. std::invalid_argument, which lists them, otherwise. */
-DensityQuantity
-ParseDensityQuantity(const std::string & name);
 
 /** Throws std::invalid_argument, which names both, where the quantities differ. `what`: what carries `actual`. */
 void

@@ -5,11 +5,11 @@
 #define boneDensityCalibrationFilter_h
 
 #include "boneDensityCalibration.h"
-#include "boneDensityMesh.h"
+#include "boneDensityCalibrationParameters.h"
+#include "boneMeshFilter.h"
 #include "boneReferenceRegion.h"
 
 #include <itkImage.h>
-#include <itkProcessObject.h>
 
 #include <optional>
 #include <variant>
@@ -38,52 +38,46 @@ struct DensityReference
  * \brief Turns a density model in Hounsfield units into one in mineral, ash or apparent density.
  *
  * Inputs: the mesh (primary, "Mesh"), with a density; "Image", optional: the CT in which references are measured as
- * rods or labels; "Labels", optional: a label map on its grid. Output: the mesh with its density converted.
+ * rods or labels; "Labels", optional: a label map on the grid of "Image". Output: the mesh with its density converted.
  *
- * First comes a line, density = intercept + slope HU: the one that was given (SetLine), or the least-squares line
- * through references (SetReferences); then published laws by name, in order (SetLaws, \ref PublishedDensityLaws). Any
- * of the two may be left out. All are lines, which take a Bernstein polynomial to one of the same degree, exactly; so a
- * CT that was calibrated before the fit gives the same model.
+ * First comes a line, density = intercept + slope HU: the one that was given (Line), or the least-squares line through
+ * references (SetReferences); Quantity says what it leads to. Then come published laws by name, in order (SetLaws, \ref
+ * PublishedDensityLaws). The line or the laws may be left out. All are linear in the density, which takes a Bernstein
+ * polynomial to one of the same degree, exactly; so a CT that was calibrated before the fit gives the same model.
  *
- * Every mesh carries its quantity and unit. What leads from another quantity than the mesh's is an error, not a wrong
- * number.
+ * Every mesh carries its quantity and unit. A law that starts from another quantity than the mesh's is refused.
  *
  * Throws itk::ExceptionObject without an input mesh or density, where there is nothing to apply, where quantities do
- * not match, a reference holds no voxel or needs an input that is missing, or references make no rising line. */
-template <typename TImage = itk::Image<float, 3>, typename TMesh = DensityMesh<double>>
-class DensityCalibrationFilter : public itk::ProcessObject
+ * not match, where a line and references are both given, a reference holds no voxel or needs an input that is missing,
+ * or references make no rising line. */
+template <typename TImage = itk::Image<float, 3>,
+          typename TMesh = DensityMesh<double>,
+          typename TLabelImage = itk::Image<short, 3>>
+class DensityCalibrationFilter : public MeshFilter<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(DensityCalibrationFilter);
   using Self = DensityCalibrationFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshFilter<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(DensityCalibrationFilter, itk::ProcessObject);
+  itkTypeMacro(DensityCalibrationFilter, MeshFilter);
 
-  using MeshType = TMesh;
   using ImageType = TImage;
-  using LabelImageType = itk::Image<short, 3>;
+  using LabelImageType = TLabelImage;
 
-  using Superclass::SetInput;
-  void
-  SetInput(const TMesh * mesh);
-  const TMesh *
-  GetInput() const;
   itkSetInputMacro(Image, TImage);
   itkGetInputMacro(Image, TImage);
-  itkSetInputMacro(Labels, LabelImageType);
-  itkGetInputMacro(Labels, LabelImageType);
-  TMesh *
-  GetOutput();
-  const TMesh *
-  GetOutput() const;
+  itkSetInputMacro(Labels, TLabelImage);
+  itkGetInputMacro(Labels, TLabelImage);
 
-  /** density = intercept + slope HU, in the unit of the quantity. Takes the place of references. */
+  BONE_FILTER_PARAMETERS(DensityCalibrationParameters, BONE_DENSITY_CALIBRATION_PARAMETERS)
+
+  /** Line and Quantity in one call. Takes the place of references. */
   void
   SetLine(double intercept, double slope, DensityQuantity to);
-  /** References, through which the line is laid; none: no line. Takes the place of a given line. */
+  /** References, through which the line is fitted, and Quantity; none: no line. Takes the place of a given line. */
   void
   SetReferences(const std::vector<DensityReference> & references, DensityQuantity to);
   const std::vector<DensityReference> &
@@ -121,16 +115,12 @@ public:
   }
   /** \} */
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
-
 protected:
   DensityCalibrationFilter();
   ~DensityCalibrationFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateData() override;
   void
@@ -138,11 +128,11 @@ protected:
 
 private:
   CalibrationReference
-  Measure(const DensityReference & reference) const;
+  Measure(const DensityReference & reference, const Execution & execution) const;
+  std::vector<DensityLaw>
+  CollectLaws(const Execution & execution);
 
-  std::optional<DensityLaw>     m_Line;
   std::vector<DensityReference> m_References;
-  DensityQuantity               m_ReferenceQuantity{ DensityQuantity::Unknown };
   std::vector<std::string>      m_Laws;
   std::optional<Calibration>    m_Calibration;
   std::vector<Step>             m_Steps;

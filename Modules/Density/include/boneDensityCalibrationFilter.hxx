@@ -6,96 +6,48 @@
 
 #include "boneDensityCalibrationFilter.h"
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 namespace bone
 {
-template <typename TImage, typename TMesh>
-DensityCalibrationFilter<TImage, TMesh>::DensityCalibrationFilter()
+template <typename TImage, typename TMesh, typename TLabelImage>
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::DensityCalibrationFilter()
 {
-  this->SetPrimaryInputName("Mesh");
   this->AddOptionalInputName("Image");
   this->AddOptionalInputName("Labels");
-  this->SetNumberOfRequiredInputs(1);
-  this->SetNumberOfRequiredOutputs(1);
-  this->SetNthOutput(0, this->MakeOutput(0));
 }
 
-template <typename TImage, typename TMesh>
-itk::DataObject::Pointer
-DensityCalibrationFilter<TImage, TMesh>::MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType)
-{
-  return TMesh::New().GetPointer();
-}
-
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 void
-DensityCalibrationFilter<TImage, TMesh>::SetInput(const TMesh * mesh)
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::SetLine(double intercept, double slope, DensityQuantity to)
 {
-  this->SetNthInput(0, const_cast<TMesh *>(mesh));
-}
-
-template <typename TImage, typename TMesh>
-const TMesh *
-DensityCalibrationFilter<TImage, TMesh>::GetInput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryInput());
-}
-
-template <typename TImage, typename TMesh>
-TMesh *
-DensityCalibrationFilter<TImage, TMesh>::GetOutput()
-{
-  return itkDynamicCastInDebugMode<TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TImage, typename TMesh>
-const TMesh *
-DensityCalibrationFilter<TImage, TMesh>::GetOutput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TImage, typename TMesh>
-void
-DensityCalibrationFilter<TImage, TMesh>::SetLine(double intercept, double slope, DensityQuantity to)
-{
-  if (m_Line && m_Line->intercept == intercept && m_Line->slope == slope && m_Line->to == to)
+  if (!m_References.empty())
   {
-    return;
+    m_References.clear();
+    this->Modified();
   }
-  DensityLaw line;
-  line.name = "line";
-  line.to = to;
-  line.slope = slope;
-  line.intercept = intercept;
-  line.high = std::numeric_limits<double>::infinity();
-  line.low = -line.high;
-  m_Line = line;
-  m_References.clear();
-  this->Modified();
+  this->SetLine(std::vector<double>{ intercept, slope });
+  this->SetQuantity(to);
 }
 
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 void
-DensityCalibrationFilter<TImage, TMesh>::SetReferences(const std::vector<DensityReference> & references,
-                                                       DensityQuantity                       to)
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::SetReferences(const std::vector<DensityReference> & references,
+                                                                    DensityQuantity                       to)
 {
-  if (!m_Line && m_References == references && m_ReferenceQuantity == to)
+  if (m_References != references)
   {
-    return;
+    m_References = references;
+    this->Modified();
   }
-  m_Line.reset();
-  m_References = references;
-  m_ReferenceQuantity = to;
-  this->Modified();
+  this->SetLine(std::vector<double>());
+  this->SetQuantity(to);
 }
 
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 void
-DensityCalibrationFilter<TImage, TMesh>::SetLaws(const std::vector<std::string> & names)
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::SetLaws(const std::vector<std::string> & names)
 {
   if (m_Laws != names)
   {
@@ -104,23 +56,29 @@ DensityCalibrationFilter<TImage, TMesh>::SetLaws(const std::vector<std::string> 
   }
 }
 
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 void
-DensityCalibrationFilter<TImage, TMesh>::VerifyPreconditions() ITKv5_CONST
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
-  if (!m_Line && m_References.empty() && m_Laws.empty())
+  this->VerifyParameters();
+  const std::vector<double> & line = m_Parameters.line;
+  if (line.empty() && m_References.empty() && m_Laws.empty())
   {
     itkExceptionMacro(
       "There is nothing to apply; give a line (SetLine), references (SetReferences) or laws (SetLaws).");
   }
-  if (m_Line && !(std::isfinite(m_Line->intercept) && std::isfinite(m_Line->slope) && m_Line->slope > 0))
+  if (!line.empty() && !m_References.empty())
   {
-    itkExceptionMacro("The line is " << m_Line->intercept << " + " << m_Line->slope
-                                     << " HU; both must be finite and the slope positive.");
+    itkExceptionMacro("Both a line and references are given: set Line to an empty one, or take the references out.");
   }
-  const DensityQuantity to = m_Line ? m_Line->to : m_ReferenceQuantity;
-  if ((m_Line || !m_References.empty()) && (to == DensityQuantity::Unknown || to == DensityQuantity::HounsfieldUnit))
+  if (!line.empty() && !(line.size() == 2 && line[1] > 0))
+  {
+    itkExceptionMacro("Line is " << ParameterText(line) << ", but must be an intercept and a slope above 0.");
+  }
+  const DensityQuantity to = m_Parameters.quantity;
+  if (!(line.empty() && m_References.empty()) &&
+      (to == DensityQuantity::Unknown || to == DensityQuantity::HounsfieldUnit))
   {
     itkExceptionMacro("The line leads to " << DensityQuantityName(to)
                                            << "; it must lead to a mineral, ash or apparent density.");
@@ -144,9 +102,10 @@ DensityCalibrationFilter<TImage, TMesh>::VerifyPreconditions() ITKv5_CONST
   }
 }
 
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 CalibrationReference
-DensityCalibrationFilter<TImage, TMesh>::Measure(const DensityReference & reference) const
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::Measure(const DensityReference & reference,
+                                                              const Execution &        execution) const
 {
   CalibrationReference measured{ reference.name, 0.0, reference.density };
   if (const auto * value = std::get_if<double>(&reference.measure))
@@ -156,75 +115,91 @@ DensityCalibrationFilter<TImage, TMesh>::Measure(const DensityReference & refere
   }
   const auto *              rod = std::get_if<ReferenceRegion>(&reference.measure);
   const ReferenceStatistics statistics =
-    rod ? MeasureReference(*this->GetImage(), *rod)
-        : MeasureReference(*this->GetImage(), *this->GetLabels(), std::get<int>(reference.measure));
+    rod ? MeasureReference(*this->GetImage(), *rod, execution)
+        : MeasureReference(*this->GetImage(), *this->GetLabels(), std::get<int>(reference.measure), execution);
   if (statistics.voxels == 0)
   {
-    itkExceptionMacro("Reference '" << reference.name << "' holds no voxel of the image.");
+    itkExceptionMacro("Reference '" << reference.name << "' holds no voxel of the input 'Image'.");
   }
   measured.value = statistics.mean;
   return measured;
 }
 
-template <typename TImage, typename TMesh>
-void
-DensityCalibrationFilter<TImage, TMesh>::GenerateData()
+template <typename TImage, typename TMesh, typename TLabelImage>
+std::vector<DensityLaw>
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::CollectLaws(const Execution & execution)
 {
+  std::vector<DensityLaw> laws;
+  if (!m_Parameters.line.empty())
+  {
+    DensityLaw line;
+    line.name = "line";
+    line.to = m_Parameters.quantity;
+    line.intercept = m_Parameters.line[0];
+    line.slope = m_Parameters.line[1];
+    line.high = std::numeric_limits<double>::infinity();
+    line.low = -line.high;
+    laws.push_back(line);
+  }
+  else if (!m_References.empty())
+  {
+    std::vector<CalibrationReference> measured;
+    const auto                        count = static_cast<double>(m_References.size());
+    for (const DensityReference & reference : m_References)
+    {
+      const auto      done = static_cast<double>(measured.size());
+      const Execution part = execution.Part(done / count, (done + 1.0) / count);
+      measured.push_back(this->Measure(reference, part));
+      part.Report(1.0);
+    }
+    m_Calibration = CalibrateDensity(measured, m_Parameters.quantity);
+    laws.push_back(m_Calibration->law);
+  }
+  for (const std::string & name : m_Laws)
+  {
+    laws.push_back(FindDensityLaw(name));
+  }
+  return laws;
+}
+
+template <typename TImage, typename TMesh, typename TLabelImage>
+void
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::GenerateData()
+{
+  const Execution execution(this);
   m_Calibration.reset();
   m_Steps.clear();
-  MeshArrays              mesh = this->GetInput()->GetArrays();
-  std::vector<DensityLaw> laws;
+  MeshArrays mesh = this->CopyInput();
   try
   {
-    if (m_Line)
-    {
-      laws.push_back(*m_Line);
-    }
-    else if (!m_References.empty())
-    {
-      std::vector<CalibrationReference> measured;
-      for (const DensityReference & reference : m_References)
-      {
-        measured.push_back(this->Measure(reference));
-      }
-      m_Calibration = CalibrateDensity(measured, m_ReferenceQuantity);
-      laws.push_back(m_Calibration->law);
-    }
-    for (const std::string & name : m_Laws)
-    {
-      laws.push_back(FindDensityLaw(name));
-    }
-    for (const DensityLaw & law : laws)
+    for (const DensityLaw & law : this->CollectLaws(execution.Part(0.0, 0.9)))
     {
       const double outside = ConvertDensity(mesh, law);
       m_Steps.push_back({ law, outside });
+      execution.ThrowIfAborted();
     }
   }
   catch (const std::invalid_argument & error)
   {
-    itkExceptionMacro(<< error.what());
+    itkExceptionMacro("" << error.what());
   }
-  this->GetOutput()->SetArrays(std::move(mesh));
+  this->SetResult(std::move(mesh));
+  execution.Report(1.0);
 }
 
-template <typename TImage, typename TMesh>
+template <typename TImage, typename TMesh, typename TLabelImage>
 void
-DensityCalibrationFilter<TImage, TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
+DensityCalibrationFilter<TImage, TMesh, TLabelImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  if (m_Line)
-  {
-    os << indent << "Line: " << m_Line->intercept << " + " << m_Line->slope << " HU, "
-       << DensityQuantityName(m_Line->to) << std::endl;
-  }
-  os << indent << "References: " << m_References.size() << ", " << DensityQuantityName(m_ReferenceQuantity)
-     << std::endl;
+  PrintParameters(os, indent, m_Parameters);
+  os << indent << "References: " << m_References.size() << '\n';
   os << indent << "Laws:";
   for (const std::string & name : m_Laws)
   {
     os << ' ' << name;
   }
-  os << std::endl;
+  os << '\n';
 }
 } // namespace bone
 

@@ -28,18 +28,19 @@ namespace bone
  * least-squares fit is p0. The voxels whose centres lie in the tetrahedron, which interpolation blurs, are then
  * added: the result p minimises  (1/V) sum_v (p(x_v) - y_v)^2 + (1/VoxelWeight) mean (p - p0)^2  (\ref PenalizedFit), V
  * being their number or the tetrahedron's volume in voxels, whichever is more. A tetrahedron without voxels keeps p0,
- * so nothing swings where voxels are few. Only points inside the tetrahedron count, so a bone's surface is as sharp as
- * the mesh. Where a mesh reaches beyond the outermost voxel centres, the nearest value between them is taken.
+ * so the polynomial does not oscillate where voxels are few. Only points inside the tetrahedron count, so a bone's
+ * surface is as sharp as the mesh. Where a mesh reaches beyond the outermost voxel centres, the nearest value between
+ * them is taken.
  *
- * Parameters: \ref DensityFitParameters. Continuous replaces the tetrahedra's polynomials by one least-squares spline for
- * each region (\ref MakeDensityContinuous); jumps remain between regions; it needs degree 1 or more. The linear
+ * Parameters: \ref DensityFitParameters. Continuous replaces the tetrahedra's polynomials by one least-squares spline
+ * for each region (\ref MakeDensityContinuous); jumps remain between regions; it needs degree 1 or more. The linear
  * interpolator is freed of its error by curvature (\ref QuadraticSampler), so that the mass is kept. With VoxelWeight 0
- * the interpolated image alone counts, with Tikhonov 0 the fit is plain least squares, which reproduces polynomials of the
- * degree exactly; linear fields are exact in any case. Where control values lie beyond OvershootLimit, the parts of
- * highest degree are reduced (\ref LimitControlValues). SurfaceMargin keeps voxels partly outside the bone from leaving a
- * dark rim, InterfaceMargin keeps a scanner's blur from mixing the densities of two layers. MaximumError counts samples
- * and voxels of the tetrahedron; not with Continuous. HoldOut leaves out the voxels of IsHeldOut(), one in five, so that
- * the error at them tells what the model says between voxels.
+ * the interpolated image alone counts, with Tikhonov 0 the fit is plain least squares, which reproduces polynomials of
+ * the degree exactly; linear fields are exact in any case. Where control values lie beyond OvershootLimit, the parts of
+ * highest degree are reduced (\ref LimitControlValues). SurfaceMargin keeps voxels partly outside the bone from leaving
+ * a dark rim, InterfaceMargin keeps a scanner's blur from mixing the densities of two layers. MaximumError counts
+ * samples and voxels of the tetrahedron; not with Continuous. HoldOut leaves out the voxels of IsHeldOut(), one in
+ * five, so that the error at them tells what the model says between voxels.
  *
  * Throws itk::ExceptionObject where an input is missing, the image is empty, the mesh has no tetrahedra or points that
  * are not finite, the mesh lies wholly outside the image, a voxel value used is not finite, or a parameter does not
@@ -105,11 +106,14 @@ private:
 
   /** The image's values, each held-out voxel replaced by the mean of its neighbours, of which none is held out. */
   std::vector<RealType>
-  WithoutHeldOutVoxels(const VoxelGrid & grid) const;
+  WithoutHeldOutVoxels(const VoxelGrid & grid, const Execution & execution) const;
 
   template <typename TPixel>
   ImageSampler
-  MakeInterpolator(const TPixel * buffer, const VoxelGrid & grid, const MeshArrays & arrays) const;
+  MakeInterpolator(const TPixel *     buffer,
+                   const VoxelGrid &  grid,
+                   const MeshArrays & arrays,
+                   const Execution &  execution) const;
 
   ImageSampler
   MakeWeights(const VoxelGrid & grid) const;

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 
@@ -66,12 +65,13 @@ DensityFitFilter<TImage, TMesh>::VerifyInputs() const
 
 template <typename TImage, typename TMesh>
 auto
-DensityFitFilter<TImage, TMesh>::WithoutHeldOutVoxels(const VoxelGrid & grid) const -> std::vector<RealType>
+DensityFitFilter<TImage, TMesh>::WithoutHeldOutVoxels(const VoxelGrid & grid, const Execution & execution) const
+  -> std::vector<RealType>
 {
   const auto *          buffer = this->GetImage()->GetBufferPointer();
   std::vector<RealType> values(buffer, buffer + grid.NumberOfVoxels());
-  for (int k = 0; k < grid.size[2]; ++k)
-  {
+  execution.Silent().For(grid.size[2], [&](std::size_t slice) {
+    const auto k = static_cast<int>(slice);
     for (int j = 0; j < grid.size[1]; ++j)
     {
       for (int i = 0; i < grid.size[0]; ++i)
@@ -94,7 +94,7 @@ DensityFitFilter<TImage, TMesh>::WithoutHeldOutVoxels(const VoxelGrid & grid) co
         values[at] = static_cast<RealType>(found > 0 ? sum / found : static_cast<double>(buffer[at]));
       }
     }
-  }
+  });
   return values;
 }
 
@@ -103,7 +103,8 @@ template <typename TPixel>
 ImageSampler
 DensityFitFilter<TImage, TMesh>::MakeInterpolator(const TPixel *     buffer,
                                                   const VoxelGrid &  grid,
-                                                  const MeshArrays & arrays) const
+                                                  const MeshArrays & arrays,
+                                                  const Execution &  execution) const
 {
   if (m_Parameters.interpolator == DensityInterpolator::Linear)
   {
@@ -126,19 +127,17 @@ DensityFitFilter<TImage, TMesh>::MakeInterpolator(const TPixel *     buffer,
     first[axis] = static_cast<int>(std::clamp(std::floor(lower) - margin, 0.0, last));
     size[axis] = static_cast<int>(std::clamp(std::ceil(upper) + margin, 0.0, last)) - first[axis] + 1;
   }
-  std::vector<float> block;
-  block.reserve(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
-  for (int k = 0; k < size[2]; ++k)
-  {
+  std::vector<float> block(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
+  execution.Silent().For(size[2], [&](std::size_t k) {
     for (int j = 0; j < size[1]; ++j)
     {
-      const TPixel * row =
-        buffer + (static_cast<std::size_t>(first[2] + k) * grid.size[1] + first[1] + j) * grid.size[0] + first[0];
-      std::transform(row, row + size[0], std::back_inserter(block), [](TPixel x) { return static_cast<float>(x); });
+      const TPixel * row = buffer + ((first[2] + k) * grid.size[1] + first[1] + j) * grid.size[0] + first[0];
+      std::transform(
+        row, row + size[0], &block[(k * size[1] + j) * size[0]], [](TPixel x) { return static_cast<float>(x); });
     }
-  }
+  });
   return SamplerOf(
-    [sampler = std::make_shared<CubicSampler>(std::move(block), size),
+    [sampler = std::make_shared<CubicSampler>(std::move(block), size, execution),
      shift = Vector3(first[0], first[1], first[2])](const Vector3 & index) { return (*sampler)(index - shift); });
 }
 
@@ -175,16 +174,16 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays, const Execution & exec
   std::vector<RealType> kept;
   if (m_Parameters.holdOut)
   {
-    kept = this->WithoutHeldOutVoxels(from.grid);
-    from.interpolated = this->MakeInterpolator(kept.data(), from.grid, arrays);
+    kept = this->WithoutHeldOutVoxels(from.grid, execution);
+    from.interpolated = this->MakeInterpolator(kept.data(), from.grid, arrays, execution.Part(0.0, 0.1));
   }
   else
   {
-    from.interpolated = this->MakeInterpolator(image->GetBufferPointer(), from.grid, arrays);
+    from.interpolated = this->MakeInterpolator(image->GetBufferPointer(), from.grid, arrays, execution.Part(0.0, 0.1));
   }
   from.weights = this->MakeWeights(from.grid);
 
-  m_Report = FitDensity(arrays, from, m_Parameters, execution);
+  m_Report = FitDensity(arrays, from, m_Parameters, execution.Part(0.1, 1.0));
   if (m_Report.outside >= m_Report.samples)
   {
     itkExceptionMacro("The mesh lies wholly outside the input 'Image': are both of the same scan, and in LPS mm?");

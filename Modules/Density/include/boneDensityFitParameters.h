@@ -5,8 +5,7 @@
 #define boneDensityFitParameters_h
 
 #include "boneBernstein.h"
-#include "boneParameters.h"
-#include "boneTypes.h"
+#include "boneDensityQuantityChoices.h"
 
 namespace bone
 {
@@ -21,12 +20,6 @@ template <>
 struct ParameterChoices<DensityInterpolator>
 {
   static constexpr std::array<const char *, 2> names = { "linear", "bspline" };
-};
-
-template <>
-struct ParameterChoices<DensityQuantity>
-{
-  static constexpr std::array<const char *, 6> names = { "unknown", "hu", "k2hpo4", "ha", "ash", "apparent" };
 };
 
 // clang-format off

@@ -4,11 +4,12 @@
 #ifndef boneDensityImageFilter_h
 #define boneDensityImageFilter_h
 
+#include "boneDensityImageParameters.h"
 #include "boneDensityMesh.h"
+#include "boneExecution.h"
 
 #include <itkImage.h>
 #include <itkImageSource.h>
-#include <itkMultiThreaderBase.h>
 
 namespace bone
 {
@@ -17,10 +18,12 @@ namespace bone
  *
  * Inputs: the mesh (primary, "Mesh"), with a density; "ReferenceImage", optional, any 3D image. Output: an image whose
  * geometry is the reference image's if one is set, else Size, Origin, Spacing and Direction (mm, LPS; start index 0). A
- * voxel whose centre lies in no tetrahedron has OutsideValue (default -1024); on shared faces the tetrahedron of lowest
- * id counts. Values are in the units of the density; for an integer pixel type they are rounded and clipped to it.
+ * voxel whose centre lies in no tetrahedron has OutsideValue (NaN too, for real pixels); on shared faces the
+ * tetrahedron of lowest id counts. Values are in the units of the density; for an integer pixel type they are rounded
+ * and clipped to it.
  *
- * Tetrahedra are drawn into the voxel rows they meet (\ref DensityRaster), over the requested region only.
+ * Tetrahedra are drawn into the voxel rows they meet (\ref DensityRaster), over the requested region only, so
+ * that the output can be streamed.
  *
  * Throws itk::ExceptionObject where the mesh is missing or has no density, or where the grid is not given. */
 template <typename TMesh = DensityMesh<double>, typename TOutputImage = itk::Image<float, 3>>
@@ -49,7 +52,7 @@ public:
   virtual void
   SetInput(const TMesh * mesh)
   {
-    this->itk::ProcessObject::SetNthInput(0, const_cast<TMesh *>(mesh));
+    this->SetPrimaryInput(const_cast<TMesh *>(mesh));
   }
   const TMesh *
   GetInput() const
@@ -67,15 +70,15 @@ public:
   itkGetConstReferenceMacro(Spacing, SpacingType);
   itkSetMacro(Direction, DirectionType);
   itkGetConstReferenceMacro(Direction, DirectionType);
-  itkSetMacro(OutsideValue, PixelType);
-  itkGetConstMacro(OutsideValue, PixelType);
+
+  BONE_FILTER_PARAMETERS(DensityImageParameters, BONE_DENSITY_IMAGE_PARAMETERS)
 
 protected:
   DensityImageFilter();
   ~DensityImageFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateOutputInformation() override;
   void
@@ -90,7 +93,6 @@ private:
   PointType     m_Origin;
   SpacingType   m_Spacing;
   DirectionType m_Direction;
-  PixelType     m_OutsideValue;
 };
 
 extern template class DensityImageFilter<DensityMesh<double>, itk::Image<float, 3>>;

@@ -23,15 +23,17 @@ DensityImageFilter<TMesh, TOutputImage>::DensityImageFilter()
   m_Origin.Fill(0.0);
   m_Spacing.Fill(1.0);
   m_Direction.SetIdentity();
-  const auto lowest = std::numeric_limits<PixelType>::lowest();
-  m_OutsideValue = lowest < -1024 ? static_cast<PixelType>(-1024) : lowest;
 }
 
 template <typename TMesh, typename TOutputImage>
 void
-DensityImageFilter<TMesh, TOutputImage>::VerifyPreconditions() ITKv5_CONST
+DensityImageFilter<TMesh, TOutputImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
+  if constexpr (std::is_integral_v<PixelType>)
+  {
+    this->VerifyParameters(); // real pixels may be NaN outside
+  }
   if (this->GetReferenceImage() != nullptr)
   {
     return;
@@ -78,10 +80,11 @@ template <typename TMesh, typename TOutputImage>
 void
 DensityImageFilter<TMesh, TOutputImage>::GenerateData()
 {
+  const Execution  execution(this);
   const MeshArrays arrays = this->GetInput()->GetArrays();
   if (!arrays.HasDensity())
   {
-    itkExceptionMacro("The input mesh has no density: fit one first (DensityFitFilter).");
+    itkExceptionMacro("The input 'Mesh' has no density: fit one first (DensityFitFilter).");
   }
   this->AllocateOutputs();
   TOutputImage *      output = this->GetOutput();
@@ -91,9 +94,9 @@ DensityImageFilter<TMesh, TOutputImage>::GenerateData()
   const std::size_t   sliceSize = static_cast<std::size_t>(grid.size[0]) * grid.size[1];
   PixelType *         buffer = output->GetBufferPointer();
 
-  const auto fillSlice = [&](itk::SizeValueType k) {
+  execution.For(grid.size[2], [&](std::size_t k) {
     std::vector<double> values(sliceSize);
-    raster.FillSlice(static_cast<int>(k), static_cast<double>(m_OutsideValue), values.data());
+    raster.FillSlice(static_cast<int>(k), m_Parameters.outsideValue, values.data());
     std::transform(values.begin(), values.end(), buffer + k * sliceSize, [](double value) {
       if constexpr (std::is_integral<PixelType>::value)
       {
@@ -102,9 +105,7 @@ DensityImageFilter<TMesh, TOutputImage>::GenerateData()
       }
       return static_cast<PixelType>(value);
     });
-  };
-  this->GetMultiThreader()->SetNumberOfWorkUnits(this->GetNumberOfWorkUnits());
-  this->GetMultiThreader()->ParallelizeArray(0, grid.size[2], fillSlice, this);
+  });
 }
 
 template <typename TMesh, typename TOutputImage>
@@ -116,8 +117,7 @@ DensityImageFilter<TMesh, TOutputImage>::PrintSelf(std::ostream & os, itk::Inden
   os << indent << "Origin: " << m_Origin << '\n';
   os << indent << "Spacing: " << m_Spacing << '\n';
   os << indent << "Direction:\n" << m_Direction << '\n';
-  os << indent << "OutsideValue: " << static_cast<typename itk::NumericTraits<PixelType>::PrintType>(m_OutsideValue)
-     << '\n';
+  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone
 

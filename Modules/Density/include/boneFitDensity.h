@@ -48,8 +48,8 @@ IsHeldOut(int i, int j, int k)
 }
 
 /** Replaces the mesh's degrees and coefficients by a fit to the image; quantity and all else stay as they are. The
- * result does not depend on the number of threads. Values that are not finite are reported, and the coefficients are then of
- * no use. The work of DensityFitFilter on plain arrays. Throws as DensityFitPlan. */
+ * result does not depend on the number of threads. Values that are not finite are reported, and the coefficients are
+ * then of no use. The work of DensityFitFilter on plain arrays. Throws as DensityFitPlan. */
 DensityFitReport
 FitDensity(MeshArrays &                 mesh,
            const DensityFitImage &      image,

@@ -4,6 +4,7 @@
 #ifndef boneReferenceRegion_h
 #define boneReferenceRegion_h
 
+#include "boneExecution.h"
 #include "boneTriangleTree.h"
 #include "boneVoxelGrid.h"
 
@@ -38,7 +39,7 @@ struct ReferenceStatistics
  * radius a voxel or two below the rod's own, so that its border does not count. */
 template <typename TImage>
 ReferenceStatistics
-MeasureReference(const TImage & image, const ReferenceRegion & region)
+MeasureReference(const TImage & image, const ReferenceRegion & region, const Execution & execution = Execution())
 {
   const VoxelGrid       grid = MakeVoxelGrid(image, image.GetBufferedRegion());
   const Eigen::Matrix3d toIndex = grid.axes.inverse();
@@ -57,6 +58,7 @@ MeasureReference(const TImage & image, const ReferenceRegion & region)
   double              squares = 0;
   for (int k = first[2]; k <= last[2]; ++k)
   {
+    execution.ThrowIfAborted();
     for (int j = first[1]; j <= last[1]; ++j)
     {
       for (int i = first[0]; i <= last[0]; ++i)
@@ -82,13 +84,17 @@ MeasureReference(const TImage & image, const ReferenceRegion & region)
 /** The same for the voxels of a label. \pre The label map has the image's buffered region. */
 template <typename TImage, typename TLabels>
 ReferenceStatistics
-MeasureReference(const TImage & image, const TLabels & labels, int label)
+MeasureReference(const TImage & image, const TLabels & labels, int label, const Execution & execution = Execution())
 {
   ReferenceStatistics statistics;
   double              squares = 0;
   const std::size_t   count = image.GetBufferedRegion().GetNumberOfPixels();
   for (std::size_t v = 0; v < count; ++v)
   {
+    if (v % (std::size_t{ 1 } << 20) == 0)
+    {
+      execution.Report(static_cast<double>(v) / static_cast<double>(count));
+    }
     if (labels.GetBufferPointer()[v] == label)
     {
       const double value = image.GetBufferPointer()[v], rest = value - statistics.mean; // Welford

@@ -57,7 +57,7 @@ Mirror(int i, int size)
 }
 } // namespace
 
-CubicSampler::CubicSampler(std::vector<float> values, const std::array<int, 3> & size)
+CubicSampler::CubicSampler(std::vector<float> values, const std::array<int, 3> & size, const Execution & execution)
   : m_Coefficients(std::move(values))
   , m_Size(size)
 {
@@ -71,10 +71,9 @@ CubicSampler::CubicSampler(std::vector<float> values, const std::array<int, 3> &
   const std::array<std::size_t, 3> stride = { { 1, n[0], n[0] * n[1] } };
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int           u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    std::vector<double> line(n[axis]);
-    for (std::size_t j = 0; j < n[v]; ++j)
-    {
+    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    execution.Part(axis / 3.0, (axis + 1) / 3.0).For(n[v], [&](std::size_t j) {
+      std::vector<double> line(n[axis]);
       for (std::size_t i = 0; i < n[u]; ++i)
       {
         float * start = &m_Coefficients[i * stride[u] + j * stride[v]];
@@ -88,7 +87,7 @@ CubicSampler::CubicSampler(std::vector<float> values, const std::array<int, 3> &
           start[k * stride[axis]] = static_cast<float>(line[k]);
         }
       }
-    }
+    });
   }
 }
 

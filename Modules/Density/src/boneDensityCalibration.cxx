@@ -14,31 +14,6 @@ namespace bone
 namespace
 {
 using Quantity = DensityQuantity;
-
-const std::vector<std::pair<std::string, Quantity>> &
-ShortNames()
-{
-  static const std::vector<std::pair<std::string, Quantity>> names = {
-    { "hu", Quantity::HounsfieldUnit },
-    { "k2hpo4", Quantity::K2HPO4MilligramPerCubicCentimetre },
-    { "ha", Quantity::HydroxyapatiteMilligramPerCubicCentimetre },
-    { "ash", Quantity::AshGramPerCubicCentimetre },
-    { "apparent", Quantity::ApparentGramPerCubicCentimetre }
-  };
-  return names;
-}
-
-template <typename TItems, typename TName>
-std::string
-Join(const TItems & items, const TName & name)
-{
-  std::string text;
-  for (const auto & item : items)
-  {
-    text += (text.empty() ? "" : ", ") + name(item);
-  }
-  return text;
-}
 } // namespace
 
 const std::vector<DensityLaw> &
@@ -77,29 +52,16 @@ PublishedDensityLaws()
 const DensityLaw &
 FindDensityLaw(const std::string & name)
 {
+  std::string list;
   for (const DensityLaw & law : PublishedDensityLaws())
   {
     if (law.name == name)
     {
       return law;
     }
+    list += (list.empty() ? "" : ", ") + law.name;
   }
-  throw std::invalid_argument("There is no density law '" + name + "'; there are " +
-                              Join(PublishedDensityLaws(), [](const DensityLaw & law) { return law.name; }) + ".");
-}
-
-DensityQuantity
-ParseDensityQuantity(const std::string & name)
-{
-  for (const auto & [shortName, quantity] : ShortNames())
-  {
-    if (shortName == name)
-    {
-      return quantity;
-    }
-  }
-  throw std::invalid_argument("There is no density quantity '" + name + "'; there are " +
-                              Join(ShortNames(), [](const auto & item) { return item.first; }) + ".");
+  throw std::invalid_argument("There is no density law '" + name + "'; there are " + list + ".");
 }
 
 void

@@ -160,13 +160,13 @@ private:
   void
   Summarize(DensityFitReport & report) const;
 
-  MeshArrays &               m_Mesh;
-  const DensityFitImage &    m_Image;
+  MeshArrays &                 m_Mesh;
+  const DensityFitImage &      m_Image;
   const DensityFitParameters & m_Parameters;
-  Eigen::Matrix3d            m_ToIndex;
-  std::vector<Rim>           m_Rims;     // those with a margin; the mesh's surface last
-  std::vector<Finding>       m_Findings; // of each tetrahedron
-  std::vector<char>          m_Open;     // of each tetrahedron: its error is above the bound
+  Eigen::Matrix3d              m_ToIndex;
+  std::vector<Rim>             m_Rims;     // those with a margin; the mesh's surface last
+  std::vector<Finding>         m_Findings; // of each tetrahedron
+  std::vector<char>            m_Open;     // of each tetrahedron: its error is above the bound
 };
 
 Fitter::Fitter(MeshArrays & mesh, const DensityFitImage & image, const DensityFitParameters & parameters)
@@ -545,10 +545,10 @@ ClearUnused(MeshArrays & mesh)
 } // namespace
 
 DensityFitReport
-FitDensity(MeshArrays &               mesh,
-           const DensityFitImage &    image,
+FitDensity(MeshArrays &                 mesh,
+           const DensityFitImage &      image,
            const DensityFitParameters & parameters,
-           const Execution &          execution)
+           const Execution &            execution)
 {
   const DensityFitReport report = Fitter(mesh, image, parameters).Run(execution);
   ClearUnused(mesh);

@@ -199,6 +199,41 @@ TEST(DensityCalibrationFilter, RefusesWhatIsMissing)
   EXPECT_THROW(filter->Update(), itk::ExceptionObject) << "no such law";
 }
 
+TEST(DensityCalibrationFilter, LabelsOfAnyTypeAndMeshesOfFloats)
+{
+  const RodPhantom phantom;
+  using ByteImage = itk::Image<unsigned char, 3>;
+  using FloatMesh = DensityMesh<float>;
+  auto labels = ByteImage::New();
+  labels->CopyInformation(phantom.labels);
+  labels->SetRegions(phantom.labels->GetBufferedRegion());
+  labels->Allocate();
+  const short * from = phantom.labels->GetBufferPointer();
+  std::copy_n(from, labels->GetBufferedRegion().GetNumberOfPixels(), labels->GetBufferPointer());
+  auto filter = DensityCalibrationFilter<test::Image, FloatMesh, ByteImage>::New();
+  filter->SetInput(test::ToMesh<FloatMesh>(MeshOf100HU()->GetArrays()));
+  filter->SetImage(phantom.image);
+  filter->SetLabels(labels);
+  filter->SetReferences({ { "a", -5.0, 1 }, { "b", 155.0, 2 } }, K2HPO4);
+  filter->Update();
+  EXPECT_NEAR(MeasureRegions(filter->GetOutput()->GetArrays())[0].mean, 75.0, 1e-9);
+}
+
+TEST(DensityCalibrationFilter, RefusesALineBesideReferencesAndOneThatIsNone)
+{
+  auto filter = MakeFilter();
+  filter->SetReferences({ { "a", 0.0, 1.0 }, { "b", 100.0, 2.0 } }, K2HPO4);
+  filter->Update();
+  filter->SetLine(std::vector<double>{ 0.0, 1.0 });
+  EXPECT_THROW(filter->Update(), itk::ExceptionObject);
+  filter->SetReferences({}, K2HPO4);
+  for (const auto & line : { std::vector<double>{ 1.0 }, { 0.0, -1.0 } })
+  {
+    filter->SetLine(line);
+    EXPECT_THROW(filter->Update(), itk::ExceptionObject);
+  }
+}
+
 TEST(DensityCalibrationFilter, RunsAgainOnlyOnChange)
 {
   auto filter = MakeFilter();

@@ -4,6 +4,7 @@
 #include "boneDensityCalibration.h"
 
 #include "boneDensityEvaluation.h"
+#include "boneDensityQuantityChoices.h"
 #include "boneDensityTestMeshes.h"
 #include "boneReferenceRegion.h"
 
@@ -121,8 +122,8 @@ TEST(DensityCalibration, PublishedLawsHaveNamesUnitsAndSources)
     EXPECT_NE(law.from, law.to);
   }
   EXPECT_THROW(FindDensityLaw("smith"), std::invalid_argument);
-  EXPECT_EQ(ParseDensityQuantity("ha"), DensityQuantity::HydroxyapatiteMilligramPerCubicCentimetre);
-  EXPECT_THROW(ParseDensityQuantity("kg"), std::invalid_argument);
+  EXPECT_EQ(ParseChoice<DensityQuantity>("ha"), DensityQuantity::HydroxyapatiteMilligramPerCubicCentimetre);
+  EXPECT_THROW(ParseChoice<DensityQuantity>("kg"), std::invalid_argument);
 }
 
 TEST(MeasureReference, FindsARodOnAnObliqueImage)

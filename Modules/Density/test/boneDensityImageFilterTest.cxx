@@ -7,6 +7,8 @@
 #include "boneDensityTestMeshes.h"
 
 #include <itkImageRegionConstIteratorWithIndex.h>
+#include <itkPipelineMonitorImageFilter.h>
+#include <itkStreamingImageFilter.h>
 
 #include <gtest/gtest.h>
 
@@ -136,6 +138,46 @@ TEST(DensityImageFilter, FillsTheRequestedRegionOnly)
   }
 }
 
+TEST(DensityImageFilter, CanBeStreamed)
+{
+  auto whole = OnGivenGrid(0.3), pieces = OnGivenGrid(0.3);
+  whole->Update();
+  auto monitor = itk::PipelineMonitorImageFilter<test::Image>::New();
+  monitor->SetInput(pieces->GetOutput());
+  auto stream = itk::StreamingImageFilter<test::Image, test::Image>::New();
+  stream->SetInput(monitor->GetOutput());
+  stream->SetNumberOfStreamDivisions(4);
+  stream->Update();
+  EXPECT_TRUE(monitor->VerifyAllInputCanStream(4));
+  const std::size_t count = whole->GetOutput()->GetBufferedRegion().GetNumberOfPixels();
+  const float *     expected = whole->GetOutput()->GetBufferPointer();
+  EXPECT_TRUE(std::equal(expected, expected + count, stream->GetOutput()->GetBufferPointer()));
+}
+
+TEST(DensityImageFilter, AnAbortLeavesTheFilterReusable)
+{
+  auto filter = OnGivenGrid(0.3);
+  filter->SetNumberOfWorkUnits(1);
+  filter->Update();
+  const float *            p = filter->GetOutput()->GetBufferPointer();
+  const std::size_t        count = filter->GetOutput()->GetBufferedRegion().GetNumberOfPixels();
+  const std::vector<float> expected(p, p + count);
+  std::vector<float>       seen;
+  bool                     stop = true;
+  filter->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) {
+    seen.push_back(filter->GetProgress());
+    filter->SetAbortGenerateData(stop && seen.back() > 0.3F);
+  });
+  filter->Modified();
+  EXPECT_THROW(filter->Update(), itk::ProcessAborted);
+  stop = false;
+  seen.clear();
+  filter->Update();
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  p = filter->GetOutput()->GetBufferPointer();
+  EXPECT_EQ(std::vector<float>(p, p + count), expected);
+}
+
 TEST(DensityImageFilter, RoundsAndClipsToAnIntegerPixel)
 {
   using ByteImage = itk::Image<unsigned char, 3>;
@@ -155,9 +197,12 @@ TEST(DensityImageFilter, RoundsAndClipsToAnIntegerPixel)
       EXPECT_LE(std::abs(it.Get() - std::min(value, 255.0)), 0.5 + 1e-9);
       clipped += value > 255 ? 1 : 0;
     }
+    else if (!InBlock(x, -1e-9))
+    {
+      EXPECT_EQ(it.Get(), 0); // OutsideValue is clipped too
+    }
   }
   EXPECT_GT(clipped, 0);
-  EXPECT_EQ(filter->GetOutsideValue(), 0);
 }
 
 TEST(DensityImageFilter, ReturnsTheImageThatAModelWasFittedTo)
@@ -224,6 +269,19 @@ TEST(DensityImageFilter, RefusesAMissingMeshDensityOrGrid)
   filter = OnGivenGrid(0.0);
   filter->SetInput(test::ToMesh(test::MakeBlock({ { 2, 2, 2 } }, Vector3(0, 0, 0), 5.0, 0.1)));
   EXPECT_THROW(filter->Update(), itk::ExceptionObject); // no density
+}
+
+TEST(DensityImageFilter, MayBeNaNOutsideUnlessPixelsAreIntegers)
+{
+  auto filter = OnGivenGrid(0.3);
+  filter->SetOutsideValue(std::nan(""));
+  filter->Update();
+  EXPECT_TRUE(std::isnan(filter->GetOutput()->GetPixel({ { 11, 11, 11 } })));
+  auto shorts = DensityImageFilter<DensityMesh<double>, itk::Image<short, 3>>::New();
+  shorts->SetInput(LinearBlock());
+  shorts->SetReferenceImage(filter->GetOutput());
+  shorts->SetOutsideValue(std::nan(""));
+  EXPECT_THROW(shorts->Update(), itk::ExceptionObject);
 }
 
 TEST(DensityImageFilter, PrintsItsParameters)

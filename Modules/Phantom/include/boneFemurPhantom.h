@@ -14,27 +14,27 @@ namespace bone
  * brackets are those of ForSubject. */
 struct FemurParameters
 {
-  double scale{ 1.0 };                ///< of the positions of neck and trochanters [0.94, 1.06]
-  double headRadius{ 23.5 };          ///< [21.5, 25.5]
-  double neckRadius{ 15.0 };          ///< at its narrow end [13.8, 16.2]
-  double neckLength{ 50.0 };          ///< from the shaft's axis to the centre of the head [46, 54]
-  double neckShaftAngle{ 126.0 };     ///< [119, 133]
-  double anteversion{ 12.0 };         ///< of the neck, forward of the frontal plane [2, 22]
-  double shaftRadius{ 13.8 };         ///< across, in the middle of the shaft [12.6, 15]
-  double bow{ 10.0 };                 ///< forward, of the shaft at the cut [6, 14]
-  double length{ 190.0 };             ///< from the neck's foot down to the cut; all subjects alike
-  double shaftCortex{ 5.2 };          ///< cortical thickness of the shaft [4.4, 6]
-  double headCortex{ 1.3 };           ///< cortical thickness of the head; the least of all [1.15, 1.45]
-  double calcarCortex{ 1.6 };         ///< additional thickness at the calcar [1.1, 2.1]
-  double spongyThickness{ 2.2 };      ///< least depth of spongy bone around the medullary cavity
-  double cavityRadius{ 11.0 };        ///< of the cavity's domed top
-  double softTissueDensity{ 40.0 };   ///<
-  double shaftDensity{ 1620.0 };      ///< cortical bone of the shaft [1540, 1700]
-  double headDensity{ 1280.0 };       ///< cortical bone of the head [1210, 1350]
-  double spongyDensity{ 190.0 };      ///< spongy bone away from head and bands [155, 225]
-  double compressiveDensity{ 140.0 }; ///< additional, in the principal compressive band [100, 180]
-  double spongyHeadDensity{ 250.0 };  ///< additional, in the middle of the head [200, 300]
-  double marrowDensity{ -50.0 };      ///< mean of the medullary cavity
+  double scale{ 1.0 };                   ///< of the positions of neck and trochanters [0.94, 1.06]
+  double headRadius{ 23.5 };             ///< [21.5, 25.5]
+  double neckRadius{ 15.0 };             ///< at its narrow end [13.8, 16.2]
+  double neckLength{ 50.0 };             ///< from the shaft's axis to the centre of the head [46, 54]
+  double neckShaftAngle{ 126.0 };        ///< [119, 133]
+  double anteversion{ 12.0 };            ///< of the neck, forward of the frontal plane [2, 22]
+  double shaftRadius{ 13.8 };            ///< across, in the middle of the shaft [12.6, 15]
+  double bow{ 10.0 };                    ///< forward, of the shaft at the cut [6, 14]
+  double length{ 190.0 };                ///< from the neck's foot down to the cut; all subjects alike
+  double shaftCortex{ 5.2 };             ///< cortical thickness of the shaft [4.4, 6]
+  double headCortex{ 1.3 };              ///< cortical thickness of the head; the least of all [1.15, 1.45]
+  double calcarCortex{ 1.6 };            ///< additional thickness at the calcar [1.1, 2.1]
+  double trabecularDepth{ 2.2 };         ///< least depth of trabecular bone around the medullary cavity
+  double cavityRadius{ 11.0 };           ///< of the cavity's domed top
+  double softTissueDensity{ 40.0 };      ///<
+  double shaftDensity{ 1620.0 };         ///< cortical bone of the shaft [1540, 1700]
+  double headDensity{ 1280.0 };          ///< cortical bone of the head [1210, 1350]
+  double trabecularDensity{ 190.0 };     ///< trabecular bone away from head and bands [155, 225]
+  double compressiveDensity{ 140.0 };    ///< additional, in the principal compressive band [100, 180]
+  double trabecularHeadDensity{ 250.0 }; ///< additional, in the middle of the head [200, 300]
+  double marrowDensity{ -50.0 };         ///< mean of the medullary cavity
 
   /** The subject of a seed: independent draws within the ranges, nearer to the mean more often. Seed 0 is the mean. The
    * same on every machine. */
@@ -53,11 +53,12 @@ struct FemurParameters
  * shaft of elliptic cross-section with a linea aspera; exact sphere of `headRadius` over the head's free half.
  * Endosteal surface: at the depth t(x), smooth in space: `headCortex` in head and trochanters, thickening down the
  * shaft to `shaftCortex` 115 mm below the neck's foot, thicker at the calcar. Layers: nested everywhere, cortical
- * thickness at least 0.97 `headCortex`, spongy bone at least 0.7 `spongyThickness` around the cavity.
+ * thickness at least 0.97 `headCortex`, trabecular bone at least 0.7 `trabecularDepth` around the cavity.
  *
- * Spongy density (HU): base + head bump (17 mm wide) + principal compressive band from the head's crown to the calcar
- * (6.5 mm wide) + half as much in the tensile band from the greater trochanter to the head; lower down the shaft.
- * Cortical density falls from shaft to head and waves by 40 HU along the shaft. Marrow waves by 15 HU. All smooth. */
+ * Trabecular density (HU): base + head bump (17 mm wide) + principal compressive band from the head's crown to the
+ * calcar (6.5 mm wide) + half as much in the tensile band from the greater trochanter to the head; lower down the
+ * shaft. Cortical density falls from shaft to head and waves by 40 HU along the shaft. Marrow waves by 15 HU. All
+ * smooth. */
 class FemurPhantom : public PhantomModel
 {
 public:

@@ -14,20 +14,20 @@ namespace bone
  * Ranges in brackets are those of ForSubject. */
 struct HemipelvisParameters
 {
-  double scale{ 1.0 };              ///< of all positions and sizes but those below [0.93, 1.07]
-  double cupRadius{ 26.0 };         ///< of the acetabulum [24, 28]
-  double inclination{ 45.0 };       ///< of the acetabulum's opening below the lateral direction [39, 51]
-  double cupAnteversion{ 18.0 };    ///< of the opening forward [10, 26]
-  double wingThickness{ 4.0 };      ///< in the middle of the wing [3.4, 4.6]
-  double crestThickness{ 10.0 };    ///< of the wing at its edge [8.6, 11.4]
-  double wingRadius{ 115.0 };       ///< of the wing's bend [100, 130]
-  double ramusRadius{ 7.0 };        ///< of the inferior pubic ramus [6.2, 7.8]
-  double cortex{ 1.4 };             ///< least cortical thickness [1.25, 1.55]
-  double wingCortex{ 1.1 };         ///< additional depth of the endosteum in the middle of the wing [0.9, 1.3]
-  double softTissueDensity{ 40.0 }; ///<
-  double corticalDensity{ 1320.0 }; ///< [1240, 1400]
-  double spongyDensity{ 180.0 };    ///< away from the acetabulum [145, 215]
-  double spongyCupDensity{ 260.0 }; ///< additional, at the acetabulum's wall [210, 310]
+  double scale{ 1.0 };                  ///< of all positions and sizes but those below [0.93, 1.07]
+  double cupRadius{ 26.0 };             ///< of the acetabulum [24, 28]
+  double inclination{ 45.0 };           ///< of the acetabulum's opening below the lateral direction [39, 51]
+  double cupAnteversion{ 18.0 };        ///< of the opening forward [10, 26]
+  double wingThickness{ 4.0 };          ///< in the middle of the wing [3.4, 4.6]
+  double crestThickness{ 10.0 };        ///< of the wing at its edge [8.6, 11.4]
+  double wingRadius{ 115.0 };           ///< of the wing's bend [100, 130]
+  double ramusRadius{ 7.0 };            ///< of the inferior pubic ramus [6.2, 7.8]
+  double cortex{ 1.4 };                 ///< least cortical thickness [1.25, 1.55]
+  double wingCortex{ 1.1 };             ///< additional depth of the endosteum in the middle of the wing [0.9, 1.3]
+  double softTissueDensity{ 40.0 };     ///<
+  double corticalDensity{ 1320.0 };     ///< [1240, 1400]
+  double trabecularDensity{ 180.0 };    ///< away from the acetabulum [145, 215]
+  double trabecularCupDensity{ 260.0 }; ///< additional, at the acetabulum's wall [210, 310]
 
   /** The subject of a seed: independent draws within the ranges, nearer to the mean more often. Seed 0 is the mean. The
    * same on every machine. */
@@ -43,10 +43,11 @@ struct HemipelvisParameters
  * bowl of `cupRadius` cut out of it, which opens sideways, forward and down. Slices across z have a hole at the
  * acetabulum's roof and two contours at the obturator foramen.
  *
- * Endosteal surface: at a depth of `cortex`, more in the middle of the wing, where opposite cortices meet and no spongy
- * layer is left, and at the acetabulum's wall. Cortical thickness is at least 0.97 `cortex`.
+ * Endosteal surface: at a depth of `cortex`, more in the middle of the wing, where opposite cortices meet and no
+ * trabecular layer is left, and at the acetabulum's wall. Cortical thickness is at least 0.97 `cortex`.
  *
- * Spongy density (HU): base + bump at the acetabulum's wall (14 mm deep); cortical density waves by 60 HU. All smooth.
+ * Trabecular density (HU): base + bump at the acetabulum's wall (14 mm deep); cortical density waves by 60 HU. All
+ * smooth.
  */
 class HemipelvisPhantom : public PhantomModel
 {

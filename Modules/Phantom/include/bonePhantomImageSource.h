@@ -4,7 +4,10 @@
 #ifndef bonePhantomImageSource_h
 #define bonePhantomImageSource_h
 
+#include "boneExecution.h"
+#include "bonePhantomImageParameters.h"
 #include "bonePhantomModel.h"
+#include "bonePhantomSampler.h"
 
 #include <itkImage.h>
 #include <itkImageSource.h>
@@ -17,9 +20,9 @@ namespace bone
  * Outputs, on the same grid:
  *  - 0, GetOutput(): the model's density, blurred by the point spread, with noise. Integer pixels are rounded and
  *    clamped to their range.
- *  - 1, GetLabelOutput(): the region of each voxel's centre: 0 outside, 1 cortical, 2 spongy, 3 medullary cavity.
+ *  - 1, GetLabelOutput(): the region of each voxel's centre: 0 outside, 1 cortical, 2 trabecular, 3 medullary cavity.
  *
- * Grid: `Direction` and `Spacing` as set. With FitToBone (default) size and origin are such that the model lies inside
+ * Grid: `Direction` and `Spacing` as set. With FitToBone size and origin are such that the model lies inside
  * with `Margin` around it; at an open end the image ends at the cut, without margin, so the bone leaves the image
  * there. With FitToBoneOff() the image has `Origin`, `Size` and `StartIndex` as set.
  *
@@ -30,6 +33,8 @@ namespace bone
  *
  * Noise: independent Gaussian of standard deviation `Noise` (HU), a hash of `NoiseSeed` and the voxel's place in the
  * image, thus the same for any number of threads and for streamed pieces.
+ *
+ * Parameters: \ref PhantomImageParameters.
  *
  * \tparam TOutputImage a 3D itk::Image of scalars. */
 template <typename TOutputImage>
@@ -78,13 +83,8 @@ public:
   /** Columns are the image's axes; a rotation, or with a reflection. Default identity. */
   itkSetMacro(Direction, DirectionType);
   itkGetConstReferenceMacro(Direction, DirectionType);
-  /** Least distance (mm) of the bone to the image's border; default 5. */
-  itkSetMacro(Margin, double);
-  itkGetConstMacro(Margin, double);
+  BONE_FILTER_PARAMETERS(PhantomImageParameters, BONE_PHANTOM_IMAGE_PARAMETERS)
 
-  itkSetMacro(FitToBone, bool);
-  itkGetConstMacro(FitToBone, bool);
-  itkBooleanMacro(FitToBone);
   /** Without FitToBone: physical point of index 0, voxels along each axis, and first index; default 0. */
   itkSetMacro(Origin, PointType);
   itkGetConstReferenceMacro(Origin, PointType);
@@ -96,11 +96,6 @@ public:
   /** Full width at half maximum (mm) along the image's axes; negative: automatic. */
   itkSetMacro(PointSpread, SpacingType);
   itkGetConstReferenceMacro(PointSpread, SpacingType);
-  /** HU; default 0. */
-  itkSetMacro(Noise, double);
-  itkGetConstMacro(Noise, double);
-  itkSetMacro(NoiseSeed, std::uint64_t);
-  itkGetConstMacro(NoiseSeed, std::uint64_t);
 
   LabelImageType *
   GetLabelOutput()
@@ -122,11 +117,11 @@ protected:
   ~PhantomImageSource() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateOutputInformation() override;
   void
-  DynamicThreadedGenerateData(const RegionType & region) override;
+  GenerateData() override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
@@ -134,18 +129,19 @@ private:
   /** Origin and size along each axis that hold the bone. */
   void
   FitGrid(PointType & origin, SizeType & size) const;
+  PhantomSampler
+  MakeSampler() const;
+  /** Writes both outputs in a part of the requested region. */
+  void
+  FillPiece(const PhantomSampler & sampler, const RegionType & piece);
 
   PhantomModel::Pointer m_Model;
   SpacingType           m_Spacing;
   DirectionType         m_Direction;
-  double                m_Margin{ 5.0 };
-  bool                  m_FitToBone{ true };
   PointType             m_Origin;
   SizeType              m_Size;
   IndexType             m_StartIndex;
   SpacingType           m_PointSpread;
-  double                m_Noise{ 0.0 };
-  std::uint64_t         m_NoiseSeed{ 1 };
 };
 } // namespace bone
 

@@ -5,11 +5,8 @@
 #define bonePhantomImageSource_hxx
 
 #include "bonePhantomImageSource.h"
-#include "bonePhantomSampler.h"
 
 #include <itkImageScanlineIterator.h>
-#include <itkMath.h>
-#include <itkTotalProgressReporter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +26,6 @@ PhantomImageSource<TOutputImage>::PhantomImageSource()
   m_PointSpread.Fill(-1.0);
   this->SetNumberOfRequiredOutputs(2);
   this->SetNthOutput(1, this->MakeOutput(1));
-  this->DynamicMultiThreadingOn();
-  this->ThreaderUpdateProgressOff();
 }
 
 template <typename TOutputImage>
@@ -46,9 +41,10 @@ PhantomImageSource<TOutputImage>::MakeOutput(itk::ProcessObject::DataObjectPoint
 
 template <typename TOutputImage>
 void
-PhantomImageSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
+PhantomImageSource<TOutputImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
+  this->VerifyParameters();
   if (m_Model == nullptr)
   {
     itkExceptionMacro("No model is set; give one with SetModel, for instance MakePhantom(\"femur\").");
@@ -73,15 +69,7 @@ PhantomImageSource<TOutputImage>::VerifyPreconditions() ITKv5_CONST
   {
     itkExceptionMacro("Direction must be a rotation (columns of length 1 at right angles), but is\n" << m_Direction);
   }
-  if (!(m_Noise >= 0.0 && m_Noise < 1e6))
-  {
-    itkExceptionMacro("Noise must be a standard deviation of at least 0 HU, but is " << m_Noise << ".");
-  }
-  if (!(m_Margin >= 0.0 && m_Margin < 1e4))
-  {
-    itkExceptionMacro("Margin must be at least 0 mm, but is " << m_Margin << ".");
-  }
-  if (!m_FitToBone && (m_Size[0] == 0 || m_Size[1] == 0 || m_Size[2] == 0))
+  if (!m_Parameters.fitToBone && (m_Size[0] == 0 || m_Size[1] == 0 || m_Size[2] == 0))
   {
     itkExceptionMacro("Size must be positive along every axis, but is " << m_Size << "; set it, or use FitToBoneOn().");
   }
@@ -107,8 +95,8 @@ PhantomImageSource<TOutputImage>::FitGrid(PointType & origin, SizeType & size) c
     const bool                   openLower = a == along && (flipped ? m_Model->GetOpenEnd() : m_Model->GetOpenStart());
     const bool                   openUpper = a == along && (flipped ? m_Model->GetOpenStart() : m_Model->GetOpenEnd());
     // An open end lies on the outer face of the last voxel; a closed one is a margin away from a voxel's centre.
-    const double lower = openLower ? extent.lower + 0.5 * m_Spacing[a] : extent.lower - m_Margin;
-    const double upper = openUpper ? extent.upper - 0.5 * m_Spacing[a] : extent.upper + m_Margin;
+    const double lower = openLower ? extent.lower + 0.5 * m_Spacing[a] : extent.lower - m_Parameters.margin;
+    const double upper = openUpper ? extent.upper - 0.5 * m_Spacing[a] : extent.upper + m_Parameters.margin;
     const double steps = std::max(0.0, (upper - lower) / m_Spacing[a]);
     if (!(steps < 1e5))
     {
@@ -144,7 +132,7 @@ PhantomImageSource<TOutputImage>::GenerateOutputInformation()
   PointType origin = m_Origin;
   SizeType  size = m_Size;
   IndexType start = m_StartIndex;
-  if (m_FitToBone)
+  if (m_Parameters.fitToBone)
   {
     this->FitGrid(origin, size);
     start.Fill(0);
@@ -165,18 +153,14 @@ PhantomImageSource<TOutputImage>::GenerateOutputInformation()
 }
 
 template <typename TOutputImage>
-void
-PhantomImageSource<TOutputImage>::DynamicThreadedGenerateData(const RegionType & region)
+PhantomSampler
+PhantomImageSource<TOutputImage>::MakeSampler() const
 {
-  TOutputImage *   image = this->GetOutput();
-  LabelImageType * labels = this->GetLabelOutput();
-  const RegionType whole = image->GetLargestPossibleRegion();
-
   PhantomGrid grid;
   Vector3     sigma;
   for (unsigned int a = 0; a < 3; ++a)
   {
-    grid.origin[a] = image->GetOrigin()[a];
+    grid.origin[a] = this->GetOutput()->GetOrigin()[a];
     grid.spacing[a] = m_Spacing[a];
     for (unsigned int b = 0; b < 3; ++b)
     {
@@ -185,60 +169,78 @@ PhantomImageSource<TOutputImage>::DynamicThreadedGenerateData(const RegionType &
     const double width = m_PointSpread[a] < 0.0 ? std::max(0.7, m_Spacing[a]) : m_PointSpread[a];
     sigma[a] = width / (2.0 * std::sqrt(2.0 * std::log(2.0)));
   }
-  const PhantomSampler sampler(m_Model, grid, sigma);
+  return PhantomSampler(m_Model, grid, sigma);
+}
 
-  // Slabs of a few slices keep the progress moving and the buffers small.
-  constexpr itk::SizeValueType slab = 16;
-  itk::TotalProgressReporter   progress(this, image->GetRequestedRegion().GetNumberOfPixels());
-  std::vector<float>           density;
-  std::vector<short>           regions;
-  for (itk::SizeValueType k = 0; k < region.GetSize(2); k += slab)
+template <typename TOutputImage>
+void
+PhantomImageSource<TOutputImage>::FillPiece(const PhantomSampler & sampler, const RegionType & piece)
+{
+  TOutputImage *   image = this->GetOutput();
+  LabelImageType * labels = this->GetLabelOutput();
+  const RegionType whole = image->GetLargestPossibleRegion();
+  PhantomBlock     block;
+  for (unsigned int a = 0; a < 3; ++a)
   {
-    RegionType piece = region;
-    piece.SetIndex(2, region.GetIndex(2) + static_cast<itk::IndexValueType>(k));
-    piece.SetSize(2, std::min(slab, region.GetSize(2) - k));
-    PhantomBlock block;
-    for (unsigned int a = 0; a < 3; ++a)
-    {
-      block.start[a] = piece.GetIndex(a);
-      block.size[a] = piece.GetSize(a);
-    }
-    density.resize(piece.GetNumberOfPixels());
-    regions.resize(piece.GetNumberOfPixels());
-    sampler.SampleDensity(block, density.data());
-    sampler.SampleRegions(block, regions.data());
-
-    std::size_t                                n = 0;
-    itk::ImageScanlineIterator<TOutputImage>   it(image, piece);
-    itk::ImageScanlineIterator<LabelImageType> labelIt(labels, piece);
-    while (!it.IsAtEnd())
-    {
-      const IndexType     index = it.GetIndex();
-      const std::uint64_t line =
-        (static_cast<std::uint64_t>(index[2] - whole.GetIndex(2)) * whole.GetSize(1) + (index[1] - whole.GetIndex(1))) *
-          whole.GetSize(0) +
-        (index[0] - whole.GetIndex(0));
-      for (std::uint64_t i = 0; !it.IsAtEndOfLine(); ++it, ++labelIt, ++i, ++n)
-      {
-        double value = density[n];
-        if (m_Noise > 0.0)
-        {
-          value += m_Noise * PhantomNoise(m_NoiseSeed, line + i);
-        }
-        if constexpr (std::is_integral<PixelType>::value)
-        {
-          value = std::clamp(std::round(value),
-                             static_cast<double>(std::numeric_limits<PixelType>::lowest()),
-                             static_cast<double>(std::numeric_limits<PixelType>::max()));
-        }
-        it.Set(static_cast<PixelType>(value));
-        labelIt.Set(regions[n]);
-      }
-      it.NextLine();
-      labelIt.NextLine();
-    }
-    progress.Completed(piece.GetNumberOfPixels());
+    block.start[a] = piece.GetIndex(a);
+    block.size[a] = piece.GetSize(a);
   }
+  std::vector<float> density(piece.GetNumberOfPixels());
+  std::vector<short> regions(piece.GetNumberOfPixels());
+  sampler.SampleDensity(block, density.data());
+  sampler.SampleRegions(block, regions.data());
+
+  std::size_t                                n = 0;
+  itk::ImageScanlineIterator<TOutputImage>   it(image, piece);
+  itk::ImageScanlineIterator<LabelImageType> labelIt(labels, piece);
+  while (!it.IsAtEnd())
+  {
+    const IndexType     index = it.GetIndex();
+    const std::uint64_t line =
+      (static_cast<std::uint64_t>(index[2] - whole.GetIndex(2)) * whole.GetSize(1) + (index[1] - whole.GetIndex(1))) *
+        whole.GetSize(0) +
+      (index[0] - whole.GetIndex(0));
+    for (std::uint64_t i = 0; !it.IsAtEndOfLine(); ++it, ++labelIt, ++i, ++n)
+    {
+      double value = density[n];
+      if (m_Parameters.noise > 0.0)
+      {
+        value += m_Parameters.noise * PhantomNoise(m_Parameters.noiseSeed, line + i);
+      }
+      if constexpr (std::is_integral<PixelType>::value)
+      {
+        value = std::clamp(std::round(value),
+                           static_cast<double>(std::numeric_limits<PixelType>::lowest()),
+                           static_cast<double>(std::numeric_limits<PixelType>::max()));
+      }
+      it.Set(static_cast<PixelType>(value));
+      labelIt.Set(regions[n]);
+    }
+    it.NextLine();
+    labelIt.NextLine();
+  }
+}
+
+template <typename TOutputImage>
+void
+PhantomImageSource<TOutputImage>::GenerateData()
+{
+  // Slabs share work at their common faces, so they are some slices thick; but an abort waits for those being filled.
+  constexpr itk::SizeValueType thickest = 16, mostVoxels = 1 << 17;
+
+  const Execution execution(this);
+  this->AllocateOutputs();
+  const PhantomSampler     sampler = this->MakeSampler();
+  const RegionType         region = this->GetOutput()->GetBufferedRegion();
+  const itk::SizeValueType slices = region.GetSize(2), sliceSize = region.GetSize(0) * region.GetSize(1);
+  const itk::SizeValueType slab = std::clamp<itk::SizeValueType>(
+    std::min(mostVoxels / sliceSize, slices / (4 * execution.GetNumberOfWorkUnits())), 1, thickest);
+  execution.For((slices + slab - 1) / slab, [&](std::size_t s) {
+    RegionType piece = region;
+    piece.SetIndex(2, region.GetIndex(2) + static_cast<itk::IndexValueType>(s * slab));
+    piece.SetSize(2, std::min(slab, slices - s * slab));
+    this->FillPiece(sampler, piece);
+  });
 }
 
 template <typename TOutputImage>
@@ -246,17 +248,14 @@ void
 PhantomImageSource<TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
+  PrintParameters(os, indent, m_Parameters);
   os << indent << "Model: " << (m_Model == nullptr ? "none" : "set") << '\n'
      << indent << "Spacing: " << m_Spacing << '\n'
      << indent << "Direction:\n"
-     << m_Direction << indent << "Margin: " << m_Margin << '\n'
-     << indent << "FitToBone: " << m_FitToBone << '\n'
-     << indent << "Origin: " << m_Origin << '\n'
+     << m_Direction << indent << "Origin: " << m_Origin << '\n'
      << indent << "Size: " << m_Size << '\n'
      << indent << "StartIndex: " << m_StartIndex << '\n'
-     << indent << "PointSpread: " << m_PointSpread << '\n'
-     << indent << "Noise: " << m_Noise << '\n'
-     << indent << "NoiseSeed: " << m_NoiseSeed << '\n';
+     << indent << "PointSpread: " << m_PointSpread << '\n';
 }
 } // namespace bone
 

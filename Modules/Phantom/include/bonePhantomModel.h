@@ -39,7 +39,7 @@ public:
 
   using Levels = std::array<double, MaximumSurfaces>;
   using Gradients = std::array<Vector3, MaximumSurfaces>;
-  /** Density (HU) of soft tissue, cortical bone, spongy bone and marrow, indexed by \ref Region. */
+  /** Density (HU) of soft tissue, cortical bone, trabecular bone and marrow, indexed by \ref Region. */
   using Materials = std::array<double, 4>;
 
   /** A straight line that the bone follows; `direction` is a unit vector. */
@@ -102,7 +102,7 @@ public:
 
   /** \name Ground truth that follows from it
    * \{ */
-  /** 0 outside, 1 cortical, 2 spongy, 3 medullary; see \ref Region. */
+  /** 0 outside, 1 cortical, 2 trabecular, 3 medullary; see \ref Region. */
   int
   Region(const Vector3 & x) const;
   static int
@@ -138,7 +138,7 @@ public:
   }
 
   /** Length (mm) of cortical bone along the inward normal at the periosteal point nearest x: up to the endosteal
-   * surface, or up to the opposite periosteal surface where a plate has no spongy layer. */
+   * surface, or up to the opposite periosteal surface where a plate has no trabecular layer. */
   double
   CorticalThickness(const Vector3 & x) const;
 

@@ -13,22 +13,22 @@ namespace bone
  * defaults suit a long bone of adult size such as a femur. */
 struct SurfacePhantomParameters
 {
-  double shaftCortex{ 5.0 };        ///< depth of the endosteum in the shaft
-  double endCortex{ 1.3 };          ///< depth of the endosteum at both ends
-  double shaftStart{ 0.12 };        ///< the cortex thickens from here ...
-  double shaftEnd{ 0.88 };          ///< ... and thins until here,
-  double transition{ 0.22 };        ///< over this fraction of the length
-  bool   medullaryCavity{ true };   ///<
-  double cavityStart{ 0.26 };       ///<
-  double cavityEnd{ 0.74 };         ///<
-  double spongyThickness{ 2.2 };    ///< least depth of spongy bone around the cavity
-  double softTissueDensity{ 40.0 }; ///<
-  double shaftDensity{ 1620.0 };    ///< cortical bone of the shaft
-  double endDensity{ 1280.0 };      ///< cortical bone of the ends
-  double spongyDensity{ 140.0 };    ///< spongy bone, deep in the shaft
-  double spongyEndDensity{ 200.0 }; ///< additional, at the ends
-  double spongyRimDensity{ 120.0 }; ///< additional, just under the periosteum
-  double marrowDensity{ -50.0 };    ///<
+  double shaftCortex{ 5.0 };            ///< depth of the endosteum in the shaft
+  double endCortex{ 1.3 };              ///< depth of the endosteum at both ends
+  double shaftStart{ 0.12 };            ///< the cortex thickens from here ...
+  double shaftEnd{ 0.88 };              ///< ... and thins until here,
+  double transition{ 0.22 };            ///< over this fraction of the length
+  bool   medullaryCavity{ true };       ///<
+  double cavityStart{ 0.26 };           ///<
+  double cavityEnd{ 0.74 };             ///<
+  double trabecularDepth{ 2.2 };        ///< least depth of trabecular bone around the cavity
+  double softTissueDensity{ 40.0 };     ///<
+  double shaftDensity{ 1620.0 };        ///< cortical bone of the shaft
+  double endDensity{ 1280.0 };          ///< cortical bone of the ends
+  double trabecularDensity{ 140.0 };    ///< trabecular bone, deep in the shaft
+  double trabecularEndDensity{ 200.0 }; ///< additional, at the ends
+  double trabecularRimDensity{ 120.0 }; ///< additional, just under the periosteum
+  double marrowDensity{ -50.0 };        ///<
 };
 
 /** \class SurfacePhantom
@@ -38,9 +38,9 @@ struct SurfacePhantomParameters
  * ends of the bone; s(x) rises smoothly from 0 to 1 over `transition` from `shaftStart` on and falls to 0 at `shaftEnd`
  * (product of two quintic steps); d(x) is the exact depth below the surface. Then:
  *  - endosteum at the depth t = endCortex + (shaftCortex - endCortex) s;
- *  - cavity where d > t + spongyThickness between the fractions cavityStart and cavityEnd, its edge rounded by 10 mm;
+ *  - cavity where d > t + trabecularDepth between the fractions cavityStart and cavityEnd, its edge rounded by 10 mm;
  *  - cortical density endDensity + (shaftDensity - endDensity) s;
- *  - spongy density spongyDensity + spongyEndDensity (1 - s) + spongyRimDensity exp(-d^2 / (2 4^2));
+ *  - trabecular density trabecularDensity + trabecularEndDensity (1 - s) + trabecularRimDensity exp(-d^2 / (2 4^2));
  *  - marrow constant.
  * Where the bone is thinner than 2 t it is cortical throughout. The bone is closed at both ends. */
 class SurfacePhantom : public PhantomModel

@@ -86,9 +86,9 @@ FemurParameters::ForSubject(std::uint64_t seed)
   vary(p.calcarCortex, 0.5);
   vary(p.shaftDensity, 80.0);
   vary(p.headDensity, 70.0);
-  vary(p.spongyDensity, 35.0);
+  vary(p.trabecularDensity, 35.0);
   vary(p.compressiveDensity, 40.0);
-  vary(p.spongyHeadDensity, 50.0);
+  vary(p.trabecularHeadDensity, 50.0);
   return p;
 }
 
@@ -103,7 +103,7 @@ FemurPhantom::FemurPhantom(const FemurParameters & parameters)
                              m_P.length,
                              m_P.headCortex,
                              m_P.shaftCortex,
-                             m_P.spongyThickness,
+                             m_P.trabecularDepth,
                              m_P.cavityRadius })
   {
     if (!(size > 0.0 && size < 1000.0))
@@ -122,13 +122,13 @@ FemurPhantom::FemurPhantom(const FemurParameters & parameters)
     itkGenericExceptionMacro("FemurPhantom: the neck-shaft angle must lie in 100..150 degrees, but is "
                              << m_P.neckShaftAngle << ".");
   }
-  if (!(m_P.shaftCortex + m_P.spongyThickness + 2.0 < m_P.shaftRadius && m_P.headCortex <= m_P.shaftCortex &&
+  if (!(m_P.shaftCortex + m_P.trabecularDepth + 2.0 < m_P.shaftRadius && m_P.headCortex <= m_P.shaftCortex &&
         m_P.shaftCortex <= 8.0 && m_P.calcarCortex >= 0.0 && m_P.calcarCortex <= 4.0))
   {
     itkGenericExceptionMacro("FemurPhantom: a shaft of radius "
                              << m_P.shaftRadius << " mm cannot hold a cortex of " << m_P.shaftCortex
                              << " mm (head: " << m_P.headCortex << " mm, calcar: " << m_P.calcarCortex
-                             << " mm more) and spongy bone of " << m_P.spongyThickness << " mm around a cavity.");
+                             << " mm more) and trabecular bone of " << m_P.trabecularDepth << " mm around a cavity.");
   }
   const double lean = (180.0 - m_P.neckShaftAngle) * M_PI / 180.0;
   const double turn = m_P.anteversion * M_PI / 180.0;
@@ -171,7 +171,7 @@ FemurPhantom::Evaluate(const Vector3 & x) const
 
   const T dome = Max(p.z - T(-80.0), T(0.0)) * T(0.45);
   const T cavity = Sqrt(Square(p.x) + Square(forward) + Square(dome)) - T(m_P.cavityRadius);
-  return { { bone, endosteum, SmoothMax(endosteum + T(m_P.spongyThickness), cavity, 3.0) } };
+  return { { bone, endosteum, SmoothMax(endosteum + T(m_P.trabecularDepth), cavity, 3.0) } };
 }
 
 PhantomModel::Levels
@@ -214,8 +214,8 @@ FemurPhantom::EvaluateMaterials(const Vector3 & x, const Levels &) const
   const double  tensile = Gaussian(SegmentDistance(x, m_P.scale * Vector3(-24.0, 5.0, -18.0), m_HeadCentre) / 6.5);
   return { { m_P.softTissueDensity,
              m_P.headDensity + (m_P.shaftDensity - m_P.headDensity) * shaft + 40.0 * shaft * wave,
-             m_P.spongyDensity * (1.0 - 0.3 * shaft) +
-               m_P.spongyHeadDensity * Gaussian((x - m_HeadCentre).norm() / 17.0) +
+             m_P.trabecularDensity * (1.0 - 0.3 * shaft) +
+               m_P.trabecularHeadDensity * Gaussian((x - m_HeadCentre).norm() / 17.0) +
                m_P.compressiveDensity * (compressive + 0.5 * tensile),
              m_P.marrowDensity + 15.0 * wave } };
 }

@@ -67,8 +67,8 @@ HemipelvisParameters::ForSubject(std::uint64_t seed)
   vary(p.cortex, 0.15);
   vary(p.wingCortex, 0.2);
   vary(p.corticalDensity, 80.0);
-  vary(p.spongyDensity, 35.0);
-  vary(p.spongyCupDensity, 50.0);
+  vary(p.trabecularDensity, 35.0);
+  vary(p.trabecularCupDensity, 50.0);
   return p;
 }
 
@@ -169,7 +169,7 @@ HemipelvisPhantom::EvaluateMaterials(const Vector3 & x, const Levels &) const
   const double wall = x.norm() - m_P.cupRadius;
   return { { m_P.softTissueDensity,
              m_P.corticalDensity + 60.0 * std::sin(x.z() / 30.0) * std::cos(x.y() / 45.0),
-             m_P.spongyDensity + m_P.spongyCupDensity * Gaussian(wall / 14.0),
+             m_P.trabecularDensity + m_P.trabecularCupDensity * Gaussian(wall / 14.0),
              0.0 } };
 }
 

@@ -81,7 +81,7 @@ PhantomModel::RegionOf(const Levels & levels)
   {
     return Region::Cortical;
   }
-  return levels[Cavity] < 0.0 ? Region::Medullary : Region::Spongy;
+  return levels[Cavity] < 0.0 ? Region::Medullary : Region::Trabecular;
 }
 
 int

@@ -20,7 +20,7 @@ namespace
 {
 /** Width of the blend that rounds the cavity's ends, mm. */
 constexpr double CavityBlend = 10.0;
-/** Width of the denser rim of spongy bone, mm. */
+/** Width of the denser rim of trabecular bone, mm. */
 constexpr double RimWidth = 4.0;
 } // namespace
 
@@ -37,12 +37,12 @@ SurfacePhantom::SurfacePhantom(const std::vector<Vector3> &                    p
 void
 SurfacePhantom::Verify() const
 {
-  if (!(m_P.endCortex > 0.0 && m_P.shaftCortex > 0.0 && m_P.spongyThickness > 0.0 && m_P.endCortex < 100.0 &&
-        m_P.shaftCortex < 100.0 && m_P.spongyThickness < 100.0))
+  if (!(m_P.endCortex > 0.0 && m_P.shaftCortex > 0.0 && m_P.trabecularDepth > 0.0 && m_P.endCortex < 100.0 &&
+        m_P.shaftCortex < 100.0 && m_P.trabecularDepth < 100.0))
   {
-    itkGenericExceptionMacro("SurfacePhantom: cortical and spongy thickness must be positive and below 100 mm, but are "
-                             << m_P.endCortex << " (ends), " << m_P.shaftCortex << " (shaft) and "
-                             << m_P.spongyThickness << ".");
+    itkGenericExceptionMacro(
+      "SurfacePhantom: cortical and trabecular thickness must be positive and below 100 mm, but are "
+      << m_P.endCortex << " (ends), " << m_P.shaftCortex << " (shaft) and " << m_P.trabecularDepth << ".");
   }
   if (!(m_P.transition > 0.0 && m_P.transition <= 1.0 && m_P.shaftStart < m_P.shaftEnd &&
         m_P.cavityStart < m_P.cavityEnd))
@@ -117,7 +117,7 @@ SurfacePhantom::EvaluateLevels(const Vector3 & x, Gradients & gradients) const
     const double middle = 0.5 * (m_P.cavityStart + m_P.cavityEnd) * m_Length;
     const double half = 0.5 * (m_P.cavityEnd - m_P.cavityStart) * m_Length;
     const double side = along < middle ? -1.0 : 1.0;
-    const Dual   depth(endosteum + m_P.spongyThickness, { { 1.0, 0.0, 0.0 } });
+    const Dual   depth(endosteum + m_P.trabecularDepth, { { 1.0, 0.0, 0.0 } });
     const Dual   ends(side * (along - middle) - half, { { 0.0, side, 0.0 } });
     const Dual   cavity = SmoothMax(depth, ends, CavityBlend);
     levels[Cavity] = cavity.v;
@@ -139,8 +139,8 @@ SurfacePhantom::EvaluateMaterials(const Vector3 & x, const Levels & levels) cons
   const double shaft = this->Shaft(x).first;
   return { { m_P.softTissueDensity,
              m_P.endDensity + (m_P.shaftDensity - m_P.endDensity) * shaft,
-             m_P.spongyDensity + m_P.spongyEndDensity * (1.0 - shaft) +
-               m_P.spongyRimDensity * Gaussian(levels[Periosteal] / RimWidth),
+             m_P.trabecularDensity + m_P.trabecularEndDensity * (1.0 - shaft) +
+               m_P.trabecularRimDensity * Gaussian(levels[Periosteal] / RimWidth),
              m_P.marrowDensity } };
 }
 

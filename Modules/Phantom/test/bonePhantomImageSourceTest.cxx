@@ -9,10 +9,13 @@
 
 #include <itkCommand.h>
 #include <itkImageRegionConstIteratorWithIndex.h>
+#include <itkPipelineMonitorImageFilter.h>
+#include <itkStreamingImageFilter.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -360,13 +363,49 @@ TEST(PhantomImageSource, IsLazy)
   EXPECT_EQ(runs, 3);
 }
 
-TEST(PhantomImageSource, CanBeAborted)
+TEST(PhantomImageSource, ProgressRisesAndAnAbortLeavesTheSourceReusable)
 {
-  auto source = MakeSource("femur", 1.0, 1.0);
-  auto command = itk::FunctionCommand::New();
-  command->SetCallback([&source](const itk::EventObject &) { source->AbortGenerateDataOn(); });
-  source->AddObserver(itk::ProgressEvent(), command);
+  auto source = MakeSource("femur", 2.0, 2.0);
+  source->SetNumberOfWorkUnits(1);
+  source->Update();
+  const float *            p = source->GetOutput()->GetBufferPointer();
+  const std::size_t        count = source->GetOutput()->GetBufferedRegion().GetNumberOfPixels();
+  const std::vector<float> expected(p, p + count);
+  std::vector<float>       seen;
+  bool                     stop = true;
+  source->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) {
+    seen.push_back(source->GetProgress());
+    source->SetAbortGenerateData(stop && seen.back() > 0.5F);
+  });
+  source->Modified();
   EXPECT_THROW(source->Update(), itk::ProcessAborted);
+  stop = false;
+  seen.clear();
+  source->Update();
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_GE(seen.size(), 8U);
+  EXPECT_EQ(seen.back(), 1.0F);
+  p = source->GetOutput()->GetBufferPointer();
+  EXPECT_EQ(std::vector<float>(p, p + count), expected);
+}
+
+TEST(PhantomImageSource, CanBeStreamed)
+{
+  auto whole = MakeSource("femur", 2.0, 3.0), pieces = MakeSource("femur", 2.0, 3.0);
+  whole->SetNoise(20.0);
+  whole->Update();
+  pieces->SetNoise(20.0);
+  auto monitor = itk::PipelineMonitorImageFilter<ImageType>::New();
+  monitor->SetInput(pieces->GetOutput());
+  auto stream = itk::StreamingImageFilter<ImageType, ImageType>::New();
+  stream->SetInput(monitor->GetOutput());
+  stream->SetNumberOfStreamDivisions(4);
+  stream->Update();
+  EXPECT_TRUE(monitor->VerifyAllInputCanStream(4));
+  const float * expected = whole->GetOutput()->GetBufferPointer();
+  EXPECT_TRUE(std::equal(expected,
+                         expected + whole->GetOutput()->GetBufferedRegion().GetNumberOfPixels(),
+                         stream->GetOutput()->GetBufferPointer()));
 }
 
 TEST(PhantomImageSource, RefusesWhatMakesNoImage)

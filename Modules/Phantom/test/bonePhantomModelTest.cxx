@@ -224,7 +224,7 @@ TEST(PhantomModel, DensitiesLieInTheirRanges)
           EXPECT_GT(density, 1150.0);
           EXPECT_LT(density, 1750.0);
           break;
-        case Region::Spongy:
+        case Region::Trabecular:
           EXPECT_GT(density, 90.0);
           EXPECT_LT(density, 760.0);
           break;
@@ -281,9 +281,9 @@ TEST(FemurPhantom, CortexHasTheThicknessAskedFor)
     const Vector3 lateral = femur.GetShaftCentre(-150.0) + p.shaftRadius * Vector3(-1, 0, 0);
     EXPECT_NEAR(femur.CorticalThickness(lateral), p.shaftCortex, 0.02);
     EXPECT_EQ(femur.Region(lateral + Vector3(0.5 * p.shaftCortex, 0, 0)), Region::Cortical);
-    EXPECT_EQ(femur.Region(lateral + Vector3(p.shaftCortex + 0.5 * p.spongyThickness, 0, 0)), Region::Spongy);
+    EXPECT_EQ(femur.Region(lateral + Vector3(p.shaftCortex + 0.5 * p.trabecularDepth, 0, 0)), Region::Trabecular);
     EXPECT_EQ(femur.Region(femur.GetShaftCentre(-150.0)), Region::Medullary);
-    EXPECT_EQ(femur.Region(femur.GetHeadCentre()), Region::Spongy);
+    EXPECT_EQ(femur.Region(femur.GetHeadCentre()), Region::Trabecular);
   }
 }
 
@@ -304,7 +304,7 @@ TEST(FemurPhantom, LayersKeepTheirLeastThickness)
       if (std::abs(levels[2]) < 1.0)
       {
         const Vector3 cavity = femur.ClosestPoint(PhantomModel::Cavity, x);
-        EXPECT_LE(femur.Distance(PhantomModel::Endosteal, cavity), -0.7 * femur.GetParameters().spongyThickness);
+        EXPECT_LE(femur.Distance(PhantomModel::Endosteal, cavity), -0.7 * femur.GetParameters().trabecularDepth);
       }
     }
   }
@@ -335,7 +335,7 @@ TEST(FemurPhantom, RefusesParametersThatMakeNoBone)
   EXPECT_THROW(FemurPhantom{ p }, itk::ExceptionObject);
 }
 
-TEST(HemipelvisPhantom, WingIsAPlateWithoutSpongyBone)
+TEST(HemipelvisPhantom, WingIsAPlateWithoutTrabecularBone)
 {
   for (std::uint64_t seed = 0; seed < 4; ++seed)
   {

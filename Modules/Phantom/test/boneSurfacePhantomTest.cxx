@@ -135,7 +135,7 @@ TEST(SurfacePhantom, ABallHasTheDistanceAndThicknessOfABall)
       EXPECT_NEAR(bone.Distance(PhantomModel::Endosteal, x), x.norm() - 17.0, sag);
     }
   }
-  EXPECT_EQ(bone.Region(Vector3::Zero()), Region::Spongy);
+  EXPECT_EQ(bone.Region(Vector3::Zero()), Region::Trabecular);
   EXPECT_EQ(bone.GetNumberOfSurfaces(), 2);
 }
 
@@ -144,8 +144,8 @@ TEST(SurfacePhantom, VolumesOfLabelsAndOfTheThresholdedImageAreThoseOfTheBall)
   const Shape              ball = Icosphere(20.0, 4);
   SurfacePhantomParameters p = Shell(3.0);
   p.shaftDensity = p.endDensity = 1240.0;
-  p.spongyDensity = 1240.0;
-  p.spongyEndDensity = p.spongyRimDensity = 0.0;
+  p.trabecularDensity = 1240.0;
+  p.trabecularEndDensity = p.trabecularRimDensity = 0.0;
   auto source = PhantomImageSource<itk::Image<float, 3>>::New();
   source->SetModel(std::make_shared<const SurfacePhantom>(ball.points, ball.triangles, p));
   source->Update();
@@ -168,8 +168,8 @@ TEST(SurfacePhantom, BlurKeepsTheMassOfTheBall)
   const Shape              ball = Icosphere(10.0, 2);
   SurfacePhantomParameters p = Shell(3.0);
   p.shaftDensity = p.endDensity = 1240.0;
-  p.spongyDensity = 240.0;
-  p.spongyEndDensity = p.spongyRimDensity = 0.0;
+  p.trabecularDensity = 240.0;
+  p.trabecularEndDensity = p.trabecularRimDensity = 0.0;
   const auto   model = std::make_shared<const SurfacePhantom>(ball.points, ball.triangles, p);
   const double outer = model->GetSurface().GetVolume();
   const double face = -model->SignedDistance(Vector3::Zero()); // the polyhedron's faces are nearly this far out
@@ -210,8 +210,8 @@ TEST(SurfacePhantom, LongBoneHasNestedLayersAndACavityInItsShaft)
   EXPECT_NEAR(std::abs(bone.GetLongitudinalAxis().direction.x()), 1.0, 1e-3);
   EXPECT_NEAR(bone.GetLength(), 300.0, 1.0);
   EXPECT_EQ(bone.Region(Vector3::Zero()), Region::Medullary);
-  EXPECT_EQ(bone.Region({ 110, 0, 0 }), Region::Spongy);
-  EXPECT_EQ(bone.Region({ -110, 0, 0 }), Region::Spongy);
+  EXPECT_EQ(bone.Region({ 110, 0, 0 }), Region::Trabecular);
+  EXPECT_EQ(bone.Region({ -110, 0, 0 }), Region::Trabecular);
   EXPECT_NEAR(bone.CorticalThickness({ 0, 17, 0 }), 5.0, 0.05);
   EXPECT_EQ(bone.Region({ 151, 0, 0 }), Region::Outside);
 

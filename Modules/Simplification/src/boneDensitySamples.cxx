@@ -68,7 +68,7 @@ PercentileRange(const std::vector<DensitySamples::Sample> & samples)
 }
 } // namespace
 
-DensitySamples::DensitySamples(const MeshArrays & mesh)
+DensitySamples::DensitySamples(const MeshArrays & mesh, const Execution & execution)
   : m_InCell(mesh.tetrahedra.size())
   , m_CellError(mesh.tetrahedra.size(), 0.0)
 {
@@ -78,26 +78,29 @@ DensitySamples::DensitySamples(const MeshArrays & mesh)
   }
   const std::size_t row = BernsteinCount(mesh.maximumDegree);
   m_FitDegree = std::min(2, mesh.maximumDegree);
-  m_Samples.reserve(SamplesPerCell * mesh.tetrahedra.size());
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-  {
-    const Id4 &     v = mesh.tetrahedra[t];
-    const Vector3 * p[4] = { &mesh.points[v[0]], &mesh.points[v[1]], &mesh.points[v[2]], &mesh.points[v[3]] };
-    const double    weight = SignedVolume(*p[0], *p[1], *p[2], *p[3]) / SamplesPerCell;
-    for (int i = 0; i < 4; ++i)
-    {
-      for (int j = i; j < 4; ++j)
+  m_Samples.resize(SamplesPerCell * mesh.tetrahedra.size());
+  execution.For(
+    mesh.tetrahedra.size(),
+    [&](std::size_t t) {
+      std::size_t     s = SamplesPerCell * t;
+      const Id4 &     v = mesh.tetrahedra[t];
+      const Vector3 * p[4] = { &mesh.points[v[0]], &mesh.points[v[1]], &mesh.points[v[2]], &mesh.points[v[3]] };
+      const double    weight = SignedVolume(*p[0], *p[1], *p[2], *p[3]) / SamplesPerCell;
+      for (int i = 0; i < 4; ++i)
       {
-        Barycentric mu = Barycentric::Constant(0.125);
-        mu[i] += 0.25;
-        mu[j] += 0.25;
-        m_InCell[t].push_back(static_cast<int>(m_Samples.size()));
-        m_Samples.push_back({ mu[0] * *p[0] + mu[1] * *p[1] + mu[2] * *p[2] + mu[3] * *p[3],
-                              BernsteinValue(mesh.degree[t], &mesh.coefficients[row * t], mu),
-                              weight });
+        for (int j = i; j < 4; ++j)
+        {
+          Barycentric mu = Barycentric::Constant(0.125);
+          mu[i] += 0.25;
+          mu[j] += 0.25;
+          m_InCell[t].push_back(static_cast<int>(s));
+          m_Samples[s++] = { mu[0] * *p[0] + mu[1] * *p[1] + mu[2] * *p[2] + mu[3] * *p[3],
+                             BernsteinValue(mesh.degree[t], &mesh.coefficients[row * t], mu),
+                             weight };
+        }
       }
-    }
-  }
+    },
+    256);
   m_Range = m_Samples.empty() ? 1.0 : PercentileRange(m_Samples);
 }
 
@@ -252,9 +255,9 @@ DensitySamples::GiveTo(const TetraComplex &        complex,
   for (IdType t : cells)
   {
     const std::size_t stride = m_InCell[t].size() / EnoughSamples + 1;
-    m_CellError[t] = m_InCell[t].empty()
-                       ? 0.0
-                       : static_cast<double>(stride) * FitResidual(stride > 1 ? Thinned(m_InCell[t], stride) : m_InCell[t]);
+    m_CellError[t] = m_InCell[t].empty() ? 0.0
+                                         : static_cast<double>(stride) *
+                                             FitResidual(stride > 1 ? Thinned(m_InCell[t], stride) : m_InCell[t]);
   }
 }
 } // namespace bone

@@ -18,6 +18,8 @@ constexpr double Stride = 0.3;
 constexpr double SmallestStride = 0.005;
 /** Cells are flipped once more when there are so many more than asked for: flips that make fewer cells come first. */
 constexpr double FlipAhead = 1.02;
+/** How much a level's surfaceError may be too low, mm. */
+constexpr double SurfaceTolerance = 0.01;
 
 std::string
 ReasonOf(const MeshCollapser & collapser)
@@ -34,11 +36,12 @@ ReasonOf(const MeshCollapser & collapser)
 }
 } // namespace
 
-HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & parameters, ParallelFor parallelFor)
+HierarchyBuilder::HierarchyBuilder(MeshArrays                      mesh,
+                                   const TetraCollapseParameters & parameters,
+                                   const Execution &               execution)
   : m_Before(std::move(mesh))
   , m_BeforePoint(m_Before.points.size())
   , m_BeforeCell(m_Before.tetrahedra.size())
-  , m_ParallelFor(std::move(parallelFor))
 {
   if (m_Before.neighbors.empty())
   {
@@ -51,7 +54,7 @@ HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & p
   std::iota(m_BeforeCell.begin(), m_BeforeCell.end(), 0);
   m_Finest = m_Before;
   m_Degree = m_Before.maximumDegree;
-  m_Collapser = std::make_unique<MeshCollapser>(m_Before, parameters);
+  m_Collapser = std::make_unique<MeshCollapser>(m_Before, parameters, execution);
   m_SampleCell.resize(m_Collapser->Densities().All().size());
   for (std::size_t t = 0; t < m_Before.tetrahedra.size(); ++t)
   {
@@ -63,7 +66,7 @@ HierarchyBuilder::HierarchyBuilder(MeshArrays mesh, const CollapseParameters & p
 }
 
 HierarchyBuilder::Draft
-HierarchyBuilder::Compact(const LevelRequest & request) const
+HierarchyBuilder::Compact(const LevelRequest & request, const Execution & execution) const
 {
   Draft draft;
   draft.mesh = m_Collapser->Complex().Compact(m_Source, draft.pointId, draft.cellSlot);
@@ -78,8 +81,7 @@ HierarchyBuilder::Compact(const LevelRequest & request) const
     const bool kept = slot < static_cast<IdType>(m_BeforeCell.size()) && !changed[slot];
     parent.push_back(kept ? m_BeforeCell[slot] : -1);
   }
-  const LevelDensity density(
-    m_Before, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, m_ParallelFor);
+  const LevelDensity density(m_Before, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, execution);
   density.Fit(draft.mesh, m_Degree);
   double bound = request.maximumDensityError;
   for (int attempt = 0; attempt < (bound < 0 ? 1 : 3); ++attempt)
@@ -101,28 +103,30 @@ HierarchyBuilder::Compact(const LevelRequest & request) const
 }
 
 bool
-HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const std::function<void()> & progress)
+HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution & execution)
 {
-  level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), progress);
-  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore, target);
-  level.collapses += m_Collapser->Run(target, progress);
-  m_Collapser->Flip(FlipAngle, FlipCellCount::Same, target);
+  level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), execution.Part(0.0, 0.9));
+  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore, target, execution);
+  level.collapses += m_Collapser->Run(target, execution.Part(0.9, 1.0));
+  m_Collapser->Flip(FlipAngle, FlipCellCount::Same, target, execution);
   return m_Collapser->Complex().AliveCells() <= target;
 }
 
 std::string
-HierarchyBuilder::CollapseWithin(const LevelRequest &          request,
-                                 BuiltLevel &                  level,
-                                 const std::function<void()> & progress)
+HierarchyBuilder::CollapseWithin(const LevelRequest & request, BuiltLevel & level, const Execution & execution)
 {
-  double stride = Stride;
+  // Nobody knows how many steps there will be: each takes this share of the progress that is left.
+  constexpr double share = 0.15;
+  double           stride = Stride, left = 1.0;
   while (m_Collapser->Complex().AliveCells() > request.tetrahedra)
   {
     const MeshCollapser last = *m_Collapser;
     const std::size_t   collapses = level.collapses;
     const auto          next = static_cast<IdType>((1.0 - stride) * last.Complex().AliveCells());
-    const bool          reached = CollapseTo(std::max(next, request.tetrahedra), level, progress);
-    if (Compact(request).densityError > request.maximumDensityError)
+    const Execution     step = execution.Part(1.0 - left, 1.0 - (1.0 - share) * left);
+    left *= 1.0 - share;
+    const bool reached = CollapseTo(std::max(next, request.tetrahedra), level, step.Part(0.0, 0.5));
+    if (Compact(request, step.Part(0.5, 1.0)).densityError > request.maximumDensityError)
     {
       level.refused[static_cast<int>(MeshOperation::Density)] += level.collapses - collapses;
       *m_Collapser = last;
@@ -142,27 +146,26 @@ HierarchyBuilder::CollapseWithin(const LevelRequest &          request,
 }
 
 BuiltLevel
-HierarchyBuilder::Next(const LevelRequest & request, const std::function<void(double)> & progress)
+HierarchyBuilder::Next(const LevelRequest & request, const Execution & execution)
 {
-  BuiltLevel   level;
-  const auto   refusedBefore = m_Collapser->Refused();
-  const double start = m_Collapser->Complex().AliveCells();
-  const double span = std::max(1.0, start - request.tetrahedra);
-  const auto   report = [&]() { progress(std::min(1.0, (start - m_Collapser->Complex().AliveCells()) / span)); };
+  BuiltLevel      level;
+  const Execution collapse = execution.Part(0.0, 0.8);
+  const auto      refusedBefore = m_Collapser->Refused();
   m_Collapser->ClearChanged();
   m_Collapser->SetMaximumDistance(request.maximumSurfaceDistance);
   if (m_Before.HasDensity() && request.maximumDensityError >= 0)
   {
-    level.stopReason = CollapseWithin(request, level, report);
+    level.stopReason = CollapseWithin(request, level, collapse);
   }
   else
   {
-    level.stopReason = CollapseTo(request.tetrahedra, level, report) ? "tetrahedra reached" : ReasonOf(*m_Collapser);
+    level.stopReason = CollapseTo(request.tetrahedra, level, collapse) ? "tetrahedra reached" : ReasonOf(*m_Collapser);
   }
-  Draft draft = Compact(request);
+  Draft draft = Compact(request, execution.Part(0.8, 0.95));
   level.mesh = std::move(draft.mesh);
+  level.densityErrorBound = request.maximumDensityError;
   level.densityError = draft.densityError;
-  level.surfaceError = LargestSurfaceDistance(m_Finest, level.mesh);
+  level.surfaceError = LargestSurfaceDistance(m_Finest, level.mesh, SurfaceTolerance, execution.Part(0.95, 1.0));
   for (int i = 0; i < MeshOperationCount; ++i)
   {
     level.refused[i] += m_Collapser->Refused()[i] - refusedBefore[i];
@@ -183,6 +186,36 @@ HierarchyBuilder::Next(const LevelRequest & request, const std::function<void(do
       m_SampleCell[s] = static_cast<IdType>(t);
     }
   }
+  execution.Report(1.0);
   return level;
+}
+
+std::vector<BuiltLevel>
+BuildLevels(MeshArrays mesh, const TetraCollapseParameters & parameters, const Execution & execution)
+{
+  const std::size_t count = std::max(
+    { parameters.levels.size(), parameters.maximumDensityErrors.size(), parameters.maximumSurfaceDistances.size() });
+  HierarchyBuilder        builder(std::move(mesh), parameters, execution.Part(0.0, 0.02));
+  const Execution         rest = execution.Part(0.02, 1.0);
+  std::vector<BuiltLevel> built;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    LevelRequest request;
+    request.maximumDegree = parameters.maximumDegree;
+    if (i < parameters.levels.size())
+    {
+      request.tetrahedra = parameters.levels[i];
+    }
+    if (i < parameters.maximumDensityErrors.size())
+    {
+      request.maximumDensityError = parameters.maximumDensityErrors[i];
+    }
+    if (i < parameters.maximumSurfaceDistances.size())
+    {
+      request.maximumSurfaceDistance = parameters.maximumSurfaceDistances[i];
+    }
+    built.push_back(builder.Next(request, rest.Part(static_cast<double>(i) / count, (i + 1.0) / count)));
+  }
+  return built;
 }
 } // namespace bone

@@ -50,8 +50,8 @@ Widen(MeshArrays & level, int degree)
 /** Points a cell of IntegratedError. Rules of fixed points keep away from faces, where the error is largest. */
 constexpr std::size_t IntegrationPoints = 24;
 
-/** Point k of a sequence that fills a tetrahedron evenly: additive recurrence in a cube by powers of the root of g^4 = g +
- * 1, sorted coordinates. */
+/** Point k of a sequence that fills a tetrahedron evenly: additive recurrence in a cube by powers of the root of g^4 =
+ * g + 1, sorted coordinates. */
 Barycentric
 EvenlySpread(std::size_t k)
 {
@@ -80,13 +80,13 @@ LevelDensity::LevelDensity(const MeshArrays &          before,
                            const std::vector<IdType> & cellSlot,
                            const DensitySamples &      samples,
                            const std::vector<IdType> & sampleCell,
-                           const ParallelFor &         parallelFor)
+                           const Execution &           execution)
   : m_Before(before)
   , m_ParentCell(parentCell)
   , m_CellSlot(cellSlot)
   , m_Samples(samples)
   , m_SampleCell(sampleCell)
-  , m_ParallelFor(parallelFor)
+  , m_Execution(execution)
   , m_Locator(before)
 {}
 
@@ -94,7 +94,8 @@ const DensityFitKernel &
 LevelDensity::Kernel(int degree) const
 {
   const auto at = m_Kernels.find(degree);
-  return at != m_Kernels.end() ? at->second : m_Kernels.emplace(degree, DensityFitKernel(degree, degree + 3)).first->second;
+  return at != m_Kernels.end() ? at->second
+                               : m_Kernels.emplace(degree, DensityFitKernel(degree, degree + 3)).first->second;
 }
 
 void
@@ -109,8 +110,8 @@ LevelDensity::FitCell(const MeshArrays & level, IdType t, const DensityFitKernel
   for (std::size_t k = 0; k < pattern.size(); ++k)
   {
     const Barycentric & mu = pattern[k];
-    const Vector3       x = mu[0] * level.points[v[0]] + mu[1] * level.points[v[1]] + mu[2] * level.points[v[2]] +
-                      mu[3] * level.points[v[3]];
+    const Vector3       x =
+      mu[0] * level.points[v[0]] + mu[1] * level.points[v[1]] + mu[2] * level.points[v[2]] + mu[3] * level.points[v[3]];
     if (!candidates.empty())
     {
       at = m_SampleCell[NearestSample(m_Samples, candidates, x)];
@@ -139,17 +140,20 @@ LevelDensity::Fit(MeshArrays & level, int degree) const
   const DensityFitKernel & kernel = Kernel(degree);
   level.quantity = m_Before.quantity;
   level.coefficients.assign(row * count, 0.0);
-  m_ParallelFor(count, [&](std::size_t t) {
-    const IdType parent = m_ParentCell[t];
-    if (parent >= 0)
-    {
-      std::copy_n(&m_Before.coefficients[from * parent], std::min(from, row), &level.coefficients[row * t]);
-    }
-    else
-    {
-      FitCell(level, static_cast<IdType>(t), kernel, &level.coefficients[row * t]);
-    }
-  });
+  m_Execution.Part(0.0, 0.5).For(
+    count,
+    [&](std::size_t t) {
+      const IdType parent = m_ParentCell[t];
+      if (parent >= 0)
+      {
+        std::copy_n(&m_Before.coefficients[from * parent], std::min(from, row), &level.coefficients[row * t]);
+      }
+      else
+      {
+        FitCell(level, static_cast<IdType>(t), kernel, &level.coefficients[row * t]);
+      }
+    },
+    16);
 }
 
 double
@@ -172,9 +176,12 @@ LevelDensity::Measure(const MeshArrays & level) const
   const std::size_t row = BernsteinCount(level.maximumDegree), count = level.tetrahedra.size();
   Errors            errors;
   errors.squares.resize(count);
-  m_ParallelFor(count, [&](std::size_t t) {
-    errors.squares[t] = CellSquares(level, static_cast<IdType>(t), level.degree[t], &level.coefficients[row * t]);
-  });
+  m_Execution.Silent().For(
+    count,
+    [&](std::size_t t) {
+      errors.squares[t] = CellSquares(level, static_cast<IdType>(t), level.degree[t], &level.coefficients[row * t]);
+    },
+    256);
   errors.square = std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0);
   for (const auto & sample : m_Samples.All())
   {
@@ -205,22 +212,25 @@ LevelDensity::IntegratedError(const MeshArrays & finest, const MeshArrays & leve
     }
   }
   std::vector<double> squares(count, 0.0), volumes(count, 0.0);
-  m_ParallelFor(count, [&](std::size_t t) {
-    const Id4 &  v = finest.tetrahedra[t];
-    const auto & p = finest.points;
-    IdType       at = start[t];
-    volumes[t] = SignedVolume(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
-    for (std::size_t k = 0; k < IntegrationPoints; ++k)
-    {
-      const Barycentric  mu = EvenlySpread(t * IntegrationPoints + k);
-      const Vector3      x = mu[0] * p[v[0]] + mu[1] * p[v[1]] + mu[2] * p[v[2]] + mu[3] * p[v[3]];
-      const CellLocation place = locator.FindNearest(x, at);
-      at = place.cell;
-      const double error = BernsteinValue(finest.degree[t], &finest.coefficients[rowFinest * t], mu) -
-                           BernsteinValue(level.degree[at], &level.coefficients[row * at], place.mu);
-      squares[t] += volumes[t] / IntegrationPoints * error * error;
-    }
-  });
+  m_Execution.Part(0.5, 1.0).For(
+    count,
+    [&](std::size_t t) {
+      const Id4 &  v = finest.tetrahedra[t];
+      const auto & p = finest.points;
+      IdType       at = start[t];
+      volumes[t] = SignedVolume(p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
+      for (std::size_t k = 0; k < IntegrationPoints; ++k)
+      {
+        const Barycentric  mu = EvenlySpread(t * IntegrationPoints + k);
+        const Vector3      x = mu[0] * p[v[0]] + mu[1] * p[v[1]] + mu[2] * p[v[2]] + mu[3] * p[v[3]];
+        const CellLocation place = locator.FindNearest(x, at);
+        at = place.cell;
+        const double error = BernsteinValue(finest.degree[t], &finest.coefficients[rowFinest * t], mu) -
+                             BernsteinValue(level.degree[at], &level.coefficients[row * at], place.mu);
+        squares[t] += volumes[t] / IntegrationPoints * error * error;
+      }
+    },
+    16);
   const double volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / volume);
 }
@@ -261,18 +271,21 @@ LevelDensity::Elevate(MeshArrays & level, double bound, int maximumDegree) const
     }
     Widen(level, highest);
     const std::size_t row = BernsteinCount(level.maximumDegree);
-    m_ParallelFor(count, [&](std::size_t k) {
-      const IdType        t = worst[k].second;
-      std::vector<double> coefficients(BernsteinCount(tried[t]));
-      FitCell(level, t, m_Kernels.at(tried[t]), coefficients.data());
-      const double square = CellSquares(level, t, tried[t], coefficients.data());
-      if (square < errors.squares[t])
-      {
-        errors.squares[t] = square;
-        level.degree[t] = tried[t];
-        std::copy(coefficients.begin(), coefficients.end(), &level.coefficients[row * t]);
-      }
-    });
+    m_Execution.Silent().For(
+      count,
+      [&](std::size_t k) {
+        const IdType        t = worst[k].second;
+        std::vector<double> coefficients(BernsteinCount(tried[t]));
+        FitCell(level, t, m_Kernels.at(tried[t]), coefficients.data());
+        const double square = CellSquares(level, t, tried[t], coefficients.data());
+        if (square < errors.squares[t])
+        {
+          errors.squares[t] = square;
+          level.degree[t] = tried[t];
+          std::copy(coefficients.begin(), coefficients.end(), &level.coefficients[row * t]);
+        }
+      },
+      16);
     errors.square = std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0);
   }
   return errors.weight > 0 ? std::sqrt(errors.square / errors.weight) : 0.0;

@@ -14,6 +14,7 @@ namespace bone
 namespace
 {
 constexpr double GoodAngle = 25.0 / 57.29577951308232;
+constexpr double ShapeWeight = 0.01;
 constexpr double LengthWeight = 1e-3;
 constexpr double FlipAngle = 20.0 / 57.29577951308232;
 constexpr double RefreshShare = 0.85;
@@ -49,9 +50,11 @@ IsTested(const TetraComplex & complex, int surface)
 }
 } // namespace
 
-MeshCollapser::MeshCollapser(const MeshArrays & mesh, const CollapseParameters & parameters)
+MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
+                             const TetraCollapseParameters & parameters,
+                             const Execution &               execution)
   : m_Complex(WithNeighbors(mesh))
-  , m_Densities(mesh)
+  , m_Densities(mesh, execution)
   , m_SurfaceSamples(m_Complex)
   , m_Parameters(parameters)
   // Faces will grow by some three times.
@@ -64,7 +67,8 @@ MeshCollapser::MeshCollapser(const MeshArrays & mesh, const CollapseParameters &
   , m_RefreshAt(m_Complex.AliveCells())
   , m_Changed(mesh.tetrahedra.size(), 0)
 {
-  if (parameters.boundDistance)
+  execution.ThrowIfAborted();
+  if (!parameters.maximumSurfaceDistances.empty())
   {
     m_Envelope.emplace(m_Complex);
   }
@@ -167,15 +171,15 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limit
   }
   const double shape = std::max(0.0, 1.0 - std::acos(worst) / GoodAngle);
   const double length = (p[v] - p[w]).norm();
-  cost = densityCost + m_Parameters.surfaceWeight * surface.integral +
-         m_Parameters.shapeWeight * volume * shape * shape + LengthWeight * length * length * length;
+  cost = densityCost + m_Parameters.surfaceWeight * surface.integral + ShapeWeight * volume * shape * shape +
+         LengthWeight * length * length * length;
   return CheckVolume(v, cost);
 }
 
 MeshCollapser::Limits
 MeshCollapser::LimitsAround(IdType v) const
 {
-  Limits limits{ std::cos(m_Parameters.minimumCorticalAngle), std::cos(m_Parameters.minimumAngle) };
+  Limits limits{ std::cos(m_Parameters.minimumCorticalDihedralAngle), std::cos(m_Parameters.minimumDihedralAngle) };
   for (IdType t : m_Complex.Star(v))
   {
     double & limit = m_Complex.Region(t) == Cortical ? limits.cortical : limits.other;
@@ -359,13 +363,14 @@ MeshCollapser::Requeue()
 }
 
 void
-MeshCollapser::NoteWhyParked()
+MeshCollapser::NoteWhyParked(const Execution & execution)
 {
   const auto before = m_Refused;
   for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
   {
     if (m_State[v] == State::Parked)
     {
+      execution.ThrowIfAborted();
       FindBest(v);
     }
   }
@@ -387,20 +392,23 @@ MeshCollapser::SetMaximumDistance(double distance)
 }
 
 std::size_t
-MeshCollapser::Run(IdType target, const std::function<void()> & progress)
+MeshCollapser::Run(IdType target, const Execution & execution)
 {
-  std::size_t collapses = 0;
+  const double start = m_Complex.AliveCells();
+  const double span = std::max(1.0, start - target);
+  std::size_t  collapses = 0;
   while (m_Complex.AliveCells() > target)
   {
+    execution.ThrowIfAborted();
     if (m_Queue.empty() && !Requeue())
     {
       // Volumes are bounded for whole regions, so that what was refused may have become allowed from afar.
       if (m_Stale)
       {
-        Refresh(target);
+        Refresh(target, execution);
         continue;
       }
-      NoteWhyParked();
+      NoteWhyParked(execution);
       break;
     }
     const Entry entry = m_Queue.top();
@@ -430,20 +438,17 @@ MeshCollapser::Run(IdType target, const std::function<void()> & progress)
     m_Stale = true;
     if (m_Complex.AliveCells() < m_RefreshAt)
     {
-      Refresh(target);
+      Refresh(target, execution);
     }
-    if (progress && collapses % 64 == 0)
-    {
-      progress();
-    }
+    execution.Report((start - m_Complex.AliveCells()) / span);
   }
   return collapses;
 }
 
 void
-MeshCollapser::Refresh(IdType minimumCells)
+MeshCollapser::Refresh(IdType minimumCells, const Execution & execution)
 {
-  Flip(FlipAngle, FlipCellCount::NotMore, minimumCells);
+  Flip(FlipAngle, FlipCellCount::NotMore, minimumCells, execution);
   m_RefreshAt = static_cast<IdType>(RefreshShare * m_Complex.AliveCells());
   m_Stale = false;
   m_Queue = {};
@@ -451,6 +456,7 @@ MeshCollapser::Refresh(IdType minimumCells)
   {
     if (m_State[v] != State::Gone)
     {
+      execution.ThrowIfAborted();
       m_Dirty[v] = 0;
       m_Epoch[v] = m_Collapses;
       const Candidate best = FindBest(v);
@@ -466,13 +472,14 @@ MeshCollapser::Refresh(IdType minimumCells)
 }
 
 std::size_t
-MeshCollapser::Flip(double angle, FlipCellCount cellCount, IdType minimumCells)
+MeshCollapser::Flip(double angle, FlipCellCount cellCount, IdType minimumCells, const Execution & execution)
 {
   FlipParameters parameters;
   parameters.targetAngle = angle;
   parameters.cellCount = cellCount;
   parameters.minimumCells = minimumCells;
-  const auto report = ImproveByFlips(m_Complex, parameters, [this](const FlipResult & flip) {
+  const auto report = ImproveByFlips(m_Complex, parameters, [this, &execution](const FlipResult & flip) {
+    execution.ThrowIfAborted();
     m_Changed.resize(m_Complex.Size(), 0);
     m_Densities.GiveTo(m_Complex, m_Densities.TakeFrom(flip.removed), flip.created);
     m_SurfaceSamples.GiveTo(m_Complex, m_SurfaceSamples.TakeFrom(m_Complex, flip.removed, -1), flip.created);

@@ -59,7 +59,7 @@ LargestSquaredDistance(const Triangle & from, const Triangle & to)
 SurfaceEnvelope::SurfaceEnvelope(const TetraComplex & complex)
 {
   std::vector<Target> finest(complex.Surfaces().surfaces.size());
-  const auto & p = complex.Points();
+  const auto &        p = complex.Points();
   for (IdType t = 0; t < complex.Size(); ++t)
   {
     for (int i = 0; i < 4; ++i)
@@ -138,7 +138,7 @@ SurfaceEnvelope::Place(const Piece &                                piece,
                        double                                       squared,
                        std::vector<std::pair<TriangleIds, Piece>> & placed) const
 {
-  double      least = std::numeric_limits<double>::max();
+  double       least = std::numeric_limits<double>::max();
   const Face * best = nullptr;
   double       centre = least;
   for (const Face & face : faces)
@@ -268,7 +268,10 @@ TrianglesOf(const MeshArrays & mesh, int region)
 } // namespace
 
 double
-LargestSurfaceDistance(const MeshArrays & first, const MeshArrays & second, double tolerance)
+LargestSurfaceDistance(const MeshArrays & first,
+                       const MeshArrays & second,
+                       double             tolerance,
+                       const Execution &  execution)
 {
   double        largest = 0.0;
   std::set<int> regions(first.region.begin(), first.region.end());
@@ -282,10 +285,12 @@ LargestSurfaceDistance(const MeshArrays & first, const MeshArrays & second, doub
     const TriangleTree treeA(a), treeB(b);
     for (const Triangle & t : a)
     {
+      execution.ThrowIfAborted();
       RaiseLargest(t, b, treeB, tolerance, largest);
     }
     for (const Triangle & t : b)
     {
+      execution.ThrowIfAborted();
       RaiseLargest(t, a, treeA, tolerance, largest);
     }
   }

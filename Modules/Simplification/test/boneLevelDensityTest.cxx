@@ -9,18 +9,6 @@
 
 using namespace bone;
 
-namespace
-{
-void
-Serial(std::size_t n, const std::function<void(std::size_t)> & body)
-{
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    body(i);
-  }
-}
-} // namespace
-
 TEST(LevelDensity, RefitOfUnchangedCellsReproducesAndKeptCellsAreCopied)
 {
   auto mesh = test::MakeBall(3, { 1, 2 }, 10, 0.1, 1);
@@ -36,10 +24,9 @@ TEST(LevelDensity, RefitOfUnchangedCellsReproducesAndKeptCellsAreCopied)
       sampleCell[s] = t;
     }
   }
-  const ParallelFor serial = Serial;
-  MeshArrays        level = mesh;
+  MeshArrays level = mesh;
   level.coefficients.clear();
-  const LevelDensity density(mesh, parents, slots, samples, sampleCell, serial);
+  const LevelDensity density(mesh, parents, slots, samples, sampleCell, Execution());
   density.Fit(level, 2);
   ASSERT_EQ(level.coefficients.size(), mesh.coefficients.size());
   for (std::size_t i = 0; i < mesh.coefficients.size(); ++i)

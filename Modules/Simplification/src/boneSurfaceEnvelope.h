@@ -4,6 +4,7 @@
 #ifndef boneSurfaceEnvelope_h
 #define boneSurfaceEnvelope_h
 
+#include "boneExecution.h"
 #include "boneSurfaceGrid.h"
 #include "boneTetraComplex.h"
 #include "boneTriangleTree.h"
@@ -22,9 +23,9 @@ namespace bone
  * finest: a changed face is within the distance where one triangle of the finest surface is near enough to all three of
  * its corners, or where its centroid is nearer than the distance by more than its radius; otherwise its quarters must
  * be. From the finest to the level: each triangle of the finest level is known to a face that is near enough to its
- * corners, or is taken apart into quarters that are. What is not decided after \ref MaximumDepth quarterings is refused,
- * so that the bound holds strictly (to rounding). Cf. M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance
- * computation for general polygonal models", 2009. */
+ * corners, or is taken apart into quarters that are. What is not decided after \ref MaximumDepth quarterings is
+ * refused, so that the bound holds strictly (to rounding). Cf. M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff
+ * distance computation for general polygonal models", 2009. */
 class SurfaceEnvelope
 {
 public:
@@ -83,10 +84,13 @@ private:
 
 /** \brief Largest distance, both ways, of the surfaces of two meshes of the same body, mm.
  *
- * Surfaces are the boundaries of the unions of all regions from each one inward. The value is attained; the true largest
- * one is no more than \a tolerance above it. */
+ * Surfaces are the boundaries of the unions of all regions from each one inward. The value is attained; the true
+ * largest one is no more than \a tolerance above it. */
 double
-LargestSurfaceDistance(const MeshArrays & first, const MeshArrays & second, double tolerance = 0.01);
+LargestSurfaceDistance(const MeshArrays & first,
+                       const MeshArrays & second,
+                       double             tolerance,
+                       const Execution &  execution = Execution());
 } // namespace bone
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef boneDensitySamples_h
 #define boneDensitySamples_h
 
+#include "boneExecution.h"
 #include "boneTetraComplex.h"
 
 #include <vector>
@@ -29,7 +30,7 @@ public:
   };
 
   /** No samples where the mesh has no density. */
-  explicit DensitySamples(const MeshArrays & mesh);
+  explicit DensitySamples(const MeshArrays & mesh, const Execution & execution = Execution());
 
   bool
   IsEmpty() const

@@ -4,6 +4,7 @@
 #ifndef boneHierarchyBuilder_h
 #define boneHierarchyBuilder_h
 
+#include "boneBuildLevels.h"
 #include "boneLevelDensity.h"
 #include "boneMeshCollapser.h"
 
@@ -21,29 +22,16 @@ struct LevelRequest
   int    maximumDegree{ -1 }; ///< to which degrees may be raised to keep to the density error; negative: not at all
 };
 
-/** One level as made. */
-struct BuiltLevel
-{
-  MeshArrays                                  mesh;
-  std::vector<IdType>                         parentPoint; ///< id of each point in the level before
-  double                                      densityError{ 0.0 };
-  double                                      surfaceError{ 0.0 };
-  std::string                                 stopReason;
-  std::size_t                                 collapses{ 0 };
-  std::array<std::size_t, MeshOperationCount> refused{}; ///< candidates refused while this level was made
-};
-
 /** \class HierarchyBuilder
  * \brief Makes one level after the other from a mesh: collapses, flips, and the densities of changed cells (paper 4).
  */
 class HierarchyBuilder
 {
 public:
-  HierarchyBuilder(MeshArrays mesh, const CollapseParameters & parameters, ParallelFor parallelFor);
+  HierarchyBuilder(MeshArrays mesh, const TetraCollapseParameters & parameters, const Execution & execution);
 
-  /** \a progress gets the fraction of this level that is done, and may throw. */
   BuiltLevel
-  Next(const LevelRequest & request, const std::function<void(double)> & progress);
+  Next(const LevelRequest & request, const Execution & execution);
 
 private:
   struct Draft
@@ -55,11 +43,11 @@ private:
   };
 
   Draft
-  Compact(const LevelRequest & request) const;
+  Compact(const LevelRequest & request, const Execution & execution) const;
   bool
-  CollapseTo(IdType target, BuiltLevel & level, const std::function<void()> & progress);
+  CollapseTo(IdType target, BuiltLevel & level, const Execution & execution);
   std::string
-  CollapseWithin(const LevelRequest & request, BuiltLevel & level, const std::function<void()> & progress);
+  CollapseWithin(const LevelRequest & request, BuiltLevel & level, const Execution & execution);
 
   MeshArrays                     m_Source;      ///< attributes of the points of the finest level
   MeshArrays                     m_Before;      ///< the level before
@@ -69,7 +57,6 @@ private:
   MeshArrays                     m_Finest;      ///< for distances
   int                            m_Degree;      ///< of changed cells
   std::unique_ptr<MeshCollapser> m_Collapser;
-  ParallelFor                    m_ParallelFor;
 };
 } // namespace bone
 

@@ -21,7 +21,7 @@ namespace bone
 class DensityFitPlan
 {
 public:
-  // On CT, with fewer points high degrees swing between them, and with more the error hardly falls.
+  // On CT, with fewer points high degrees oscillate between them, and with more the error hardly falls.
   static constexpr double      PointsPerCoefficient = 4.0;
   static constexpr double      PointsPerVoxel = 4.0;
   static constexpr int         LargestLattice = 20; // 1771 points

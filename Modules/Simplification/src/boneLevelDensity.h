@@ -6,17 +6,14 @@
 
 #include "boneDensityFitKernel.h"
 #include "boneDensitySamples.h"
+#include "boneExecution.h"
 #include "boneTetraLocator.h"
 
-#include <functional>
 #include <map>
 #include <vector>
 
 namespace bone
 {
-/** Runs a body for every index 0..n-1, perhaps in parallel. */
-using ParallelFor = std::function<void(std::size_t n, const std::function<void(std::size_t)> & body)>;
-
 /** \class LevelDensity
  * \brief The density of a new level: cells that did not change keep theirs, the others are fitted to the level before.
  *
@@ -29,20 +26,20 @@ public:
    * \param parentCell  for each cell of the new level its cell in \a before if it did not change, otherwise -1.
    * \param cellSlot    for each cell of the new level its slot in \a samples.
    * \param sampleCell  for each sample its cell in \a before: where the search begins.
-   * All must live as long as this. */
+   * All but the execution must live as long as this. */
   LevelDensity(const MeshArrays &          before,
                const std::vector<IdType> & parentCell,
                const std::vector<IdType> & cellSlot,
                const DensitySamples &      samples,
                const std::vector<IdType> & sampleCell,
-               const ParallelFor &         parallelFor);
+               const Execution &           execution);
 
   /** Writes degree, coefficients and quantity of a level; changed cells get the degree asked for. */
   void
   Fit(MeshArrays & level, int degree) const;
 
-  /** \brief Raises the degree of changed cells, those of the largest error first and one step at a time, until the error
-   * of the level is no more than \a bound or nothing is left to raise.
+  /** \brief Raises the degree of changed cells, those of the largest error first and one step at a time, until the
+   * error of the level is no more than \a bound or nothing is left to raise.
    *
    * A cell keeps its lower degree where the higher one does not make it better. Returns the error. */
   double
@@ -53,8 +50,8 @@ public:
   double
   Error(const MeshArrays & level) const;
 
-  /** The same by integration over the finest level, at 24 points a cell that are spread evenly over the mesh as a whole:
-   * within 3 % on 500 cells, less on more. */
+  /** The same by integration over the finest level, at 24 points a cell that are spread evenly over the mesh as a
+   * whole: within 3 % on 500 cells, less on more. */
   double
   IntegratedError(const MeshArrays & finest, const MeshArrays & level) const;
 
@@ -80,7 +77,7 @@ private:
   const std::vector<IdType> &             m_CellSlot;
   const DensitySamples &                  m_Samples;
   const std::vector<IdType> &             m_SampleCell;
-  const ParallelFor &                     m_ParallelFor;
+  Execution                               m_Execution;
   TetraLocator                            m_Locator;
   mutable std::map<int, DensityFitKernel> m_Kernels;
 };

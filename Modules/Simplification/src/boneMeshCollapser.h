@@ -5,13 +5,14 @@
 #define boneMeshCollapser_h
 
 #include "boneDensitySamples.h"
+#include "boneExecution.h"
 #include "boneSurfaceEnvelope.h"
 #include "boneSurfaceGrid.h"
 #include "boneSurfaceSamples.h"
+#include "boneTetraCollapseParameters.h"
 #include "boneTetraComplex.h"
 #include "boneTetraFlips.h"
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <queue>
@@ -19,19 +20,6 @@
 
 namespace bone
 {
-/** Weights and bounds of the collapse; the terms of the cost are in mm^3. */
-struct CollapseParameters
-{
-  double densityWeight{ 3.0 };  ///< of the squared density error, as a share of the density's range, integrated
-  double surfaceWeight{ 1.0 };  ///< 1/mm, of the squared distance of boundary and interfaces, integrated
-  double volumeWeight{ 200.0 }; ///< of the growth of each region's squared volume error over its volume
-  double shapeWeight{ 0.01 };   ///< of the cells' volume, where their smallest dihedral angle is small
-  double minimumAngle{ 0.05235987755982988 }; ///< rad; no dihedral angle falls below this and below what it was
-  double minimumCorticalAngle{ 0.02617993877991494 }; ///< rad, the same in the outermost layer, which may be thin
-  double maximumVolumeChange{ std::numeric_limits<double>::infinity() }; ///< of each region, as a share
-  bool   boundDistance{ false };                                         ///< SetMaximumDistance may be called
-};
-
 /** \class MeshCollapser
  * \brief Half-edge collapses v -> w from a priority queue (paper 4).
  *
@@ -43,23 +31,24 @@ struct CollapseParameters
  * (\ref SurfaceEnvelope).
  *
  * Cost of v -> w = densityWeight R(v) / range^2 + surfaceWeight S(v, w) + volumeWeight sum of ((E + dV)^2 - E^2) / V
- * + shapeWeight V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3: R from \ref DensitySamples::RemovalCost, S from \ref
+ * + 0.01 V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3: R from \ref DensitySamples::RemovalCost, S from \ref
  * SurfaceSamples::CollapseCost, E and dV the volume error so far and the change of each region of volume V. */
 class MeshCollapser
 {
 public:
-  MeshCollapser(const MeshArrays & mesh, const CollapseParameters & parameters);
+  MeshCollapser(const MeshArrays & mesh, const TetraCollapseParameters & parameters, const Execution & execution);
 
-  /** Collapses until no more than \a target cells or nothing allowed is left. Returns the number of collapses. */
+  /** Collapses until no more than \a target cells or nothing allowed is left. Returns the number of collapses. A
+   * collapser whose run, or flips, were aborted must not be used any more. */
   std::size_t
-  Run(IdType target, const std::function<void()> & progress = {});
+  Run(IdType target, const Execution & execution);
 
   /** Flips at cells below the angle (rad), which make no fewer cells than \a minimumCells. Returns their number. */
   std::size_t
-  Flip(double angle, FlipCellCount cellCount, IdType minimumCells);
+  Flip(double angle, FlipCellCount cellCount, IdType minimumCells, const Execution & execution);
 
   /** Bound on the distance of boundary and interfaces to those of the finest level, both ways, mm; default infinity.
-   * Must not descend. \pre CollapseParameters::boundDistance. */
+   * Must not descend. \pre The parameters hold bounds on it. */
   void
   SetMaximumDistance(double distance);
 
@@ -148,18 +137,18 @@ private:
   void
   UpdateGrid(IdType v, bool insert);
   void
-  Refresh(IdType minimumCells);
+  Refresh(IdType minimumCells, const Execution & execution);
   bool
   Requeue();
   void
-  NoteWhyParked();
+  NoteWhyParked(const Execution & execution);
   Region &
   RegionOf(int label);
 
   TetraComplex                                m_Complex;
   DensitySamples                              m_Densities;
   SurfaceSamples                              m_SurfaceSamples;
-  CollapseParameters                          m_Parameters;
+  TetraCollapseParameters                     m_Parameters;
   SurfaceGrid                                 m_Grid;
   std::vector<Region>                         m_Regions;
   std::vector<double>                         m_VolumeChange; ///< of each region, by the candidate looked at
