@@ -21,9 +21,9 @@ main(int argc, char ** argv)
   }
   try
   {
-    auto tiling = bone::ContourTilingMeshSource<bone::ContourStack, bone::DensityMesh<double>>::New();
+    auto tiling = bone::ContourTilingMeshSource<bone::DensityMesh<double>>::New();
     tiling->SetInput(bone::ReadContours(argv[1]));
-    tiling->SetMetric("span");
+    tiling->SetMetric(bone::TilingMetricKind::Span);
     tiling->Update();
 
     const bone::TilingReport & report = tiling->GetReport();

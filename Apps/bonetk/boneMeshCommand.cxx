@@ -35,9 +35,9 @@ Run(const Options & options, Session & session)
   {
     throw UsageError("--metric density needs --ct");
   }
-  auto tiling = ContourTilingMeshSource<ContourStack, DensityMesh<double>>::New();
+  auto tiling = ContourTilingMeshSource<DensityMesh<double>>::New();
   tiling->SetInput(ReadContours(options.contours));
-  tiling->SetMetric(options.metric);
+  tiling->SetMetric(ParseChoice<TilingMetricKind>(options.metric));
   if (!options.correspondence.empty())
   {
     tiling->SetCorrespondence(std::make_shared<ContourCorrespondence>(ReadCorrespondence(options.correspondence)));

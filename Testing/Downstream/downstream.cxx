@@ -42,7 +42,7 @@ main()
     resample->SetMaximumSpacing(8.0);
     auto axis = bone::MedialAxisFilter<bone::ContourStack>::New();
     axis->SetInput(resample->GetOutput());
-    auto tiling = bone::ContourTilingMeshSource<bone::ContourStack, Mesh>::New();
+    auto tiling = bone::ContourTilingMeshSource<Mesh>::New();
     tiling->SetInput(axis->GetOutput());
     auto smoothing = bone::TetraSmoothingFilter<Mesh>::New();
     smoothing->SetInput(tiling->GetOutput());

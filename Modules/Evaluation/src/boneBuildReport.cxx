@@ -93,7 +93,7 @@ ToJson(const TilingReport & tiling)
            { "patches", tiling.patches },
            { "filledSlabs", tiling.filledSlabs },
            { "filledEnds", tiling.filledEnds },
-           { "partedGroups", tiling.partedGroups } };
+           { "separatedGroups", tiling.separatedGroups } };
 }
 
 /** A measure's distribution; `unit` is what its values are multiplied by. The histogram has equal bins over `range`. */

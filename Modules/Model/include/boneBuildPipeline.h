@@ -42,7 +42,7 @@ public:
   using SlicesType = ContourSliceFilter<ContourStack>;
   using ResampleType = ContourResampleFilter<ContourStack>;
   using MedialAxisType = MedialAxisFilter<ContourStack>;
-  using TilingType = ContourTilingMeshSource<ContourStack, MeshType>;
+  using TilingType = ContourTilingMeshSource<MeshType>;
   using QualityType = MeshQualityFilter<MeshType>;
   using FitType = DensityFitFilter<CTImage, MeshType>;
   using CollapseType = TetraCollapseFilter<MeshType>;

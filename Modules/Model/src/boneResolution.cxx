@@ -180,7 +180,7 @@ AdjustSamples(ContourResampleFilter<> &           resample,
   constexpr int    maximumTrials = 5;
   auto             tiling = ContourTilingMeshSource<>::New();
   tiling->SetInput(axes.GetOutput());
-  tiling->SetMetric("span");
+  tiling->SetMetric(TilingMetricKind::Span);
   double asked = static_cast<double>(tetrahedra), best = asked, bestError = std::numeric_limits<double>::max();
   IdType bestCount = 0;
   for (int trial = 0; trial < maximumTrials && bestError > tolerance; ++trial)

@@ -5,28 +5,22 @@
 #define boneContourTiler_h
 
 #include "boneContourStack.h"
+#include "boneExecution.h"
 #include "boneMeshArrays.h"
 #include "boneTilingMetric.h"
 #include "boneTilingReport.h"
 
-#include <functional>
 #include <memory>
 
 namespace bone
 {
-/** What the tiling of a stack of contours is asked to do. */
-struct TilingParameters
+/** What the tiling is given beside the contours. */
+struct TilingGuide
 {
   /** Cost of the knit's steps; span length where none is set. */
   std::shared_ptr<const TilingMetric> metric;
-  /** Correspondence of pieces in some slabs in place of what overlap and distance say; found for all where none is set.
-   */
+  /** Correspondence of pieces in some slabs, used there in place of overlap and distance. */
   std::shared_ptr<const ContourCorrespondence> correspondence;
-  /** Runs body(0) to body(count - 1), in any order and at once if it likes; one after the other where none is set. The
-   * result does not depend on it. */
-  std::function<void(std::size_t count, const std::function<void(std::size_t)> & body)> parallel;
-  /** Called with the share of the work done, 0..1. May throw to end the tiling. */
-  std::function<void(double)> progress;
 };
 
 /** \brief Tiles a stack of nested contours into a layered, conforming tetrahedral mesh (paper 2.2 to 2.6).
@@ -34,13 +28,13 @@ struct TilingParameters
  * 1. Each slice is triangulated once: the rings between its nested contours and about the medial axis. Both slabs that
  *    meet at the slice share these triangles (continuity between slices).
  * 2. Pieces of neighbouring slices are matched by overlap and distance; several pieces against one are joined by
- * bridges into a composite contour; a layer that is missing on one side is drawn onto the next contour inward.
+ *    bridges into a composite contour; a layer that is missing on one side collapses onto the next contour inward.
  * 3. Each pair is knitted from the inside out: the wall between the medial axes first, then ring after ring, the wall
  *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
  * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.
- * 5. A slab that cannot be knitted so (pieces that no chain of rings describes, bends that turn tetrahedra over, walls
- *    that would cross or are twisted) is filled as a whole from the overlay of its slices' triangulations, which always
- * can be done; vertices between the slices are left where they cannot be removed.
+ * 5. A slab that cannot be knitted in this way (pieces that no chain of rings describes, bends that invert tetrahedra,
+ *    walls that would cross or are twisted) is filled as a whole from the overlay of its slices' triangulations, which
+ *    is always possible; vertices between the slices stay where they cannot be removed.
  *
  * A hole that is bone above and below would be a void; it is closed and counted. Orientation is decided by exact
  * predicates and the result is validated: the function returns a valid mesh or throws std::runtime_error naming the
@@ -48,9 +42,13 @@ struct TilingParameters
  * cannot be joined; where no correspondence was given, such pieces end and begin there, and the report says so).
  *
  * The stack's contours must be simple and nested (\ref ContourStack::Verify). Layer, slice and region of the result:
- * \ref MeshArrays. Deterministic. */
+ * \ref MeshArrays. The result does not depend on the number of threads. Throws itk::ProcessAborted where `execution` is
+ * aborted; `report` then holds what was met until then. */
 MeshArrays
-TileContours(const ContourStack & stack, const TilingParameters & parameters, TilingReport & report);
+TileContours(const ContourStack & stack,
+             const TilingGuide &  guide,
+             TilingReport &       report,
+             const Execution &    execution = Execution());
 } // namespace bone
 
 #endif

@@ -4,67 +4,64 @@
 #ifndef boneContourTilingMeshSource_h
 #define boneContourTilingMeshSource_h
 
-#include "boneContourStack.h"
 #include "boneContourTiler.h"
-#include "boneDensityMesh.h"
+#include "boneMeshSource.h"
 
 #include <itkImage.h>
-#include <itkProcessObject.h>
 
 namespace bone
 {
 /** \class ContourTilingMeshSource
  * \brief Tiles a stack of nested contours into a layered, conforming tetrahedral mesh (paper 2.2 to 2.6).
  *
- * Input: a ContourStack (mm, LPS), its contours simple and nested. Optional input "DensityImage": the CT, which the
- * metrics `density` and `combined` read along the edges they choose from (trilinear; outside the image an edge costs
- * its length alone). Output: a mesh with region per tetrahedron, layer and slice per point, face neighbours, no
- * density.
+ * Inputs: "Contours" (primary), a ContourStack (mm, LPS) whose contours are simple and nested; "DensityImage",
+ * optional: the CT, which the metrics `density` and `combined` read along the edges they choose from (trilinear;
+ * outside the image an edge costs its length alone). Output: a mesh with region per tetrahedron, layer and slice per
+ * point, face neighbours, no density.
  *
- * Parameters:
- * - Metric: `combined` (default: span length plus density deviation / 500; without a density image span length alone),
- *   `span`, `area`, `volume` or `density` (paper 2.3); or an object of your own by SetMetricObject.
+ * Parameters: \ref TilingParameters. The metric `combined` is span length plus density deviation / 500, and span length
+ * alone without a density image. SetMetricObject takes a metric of another class in place of that parameter.
  *
- * The method, its ways out where a slab cannot be knitted, and what it reports: \ref TileContours, \ref TilingReport.
+ * The method, what it does where a slab cannot be knitted, and what it reports: \ref TileContours, \ref TilingReport.
  * The mesh is valid or the update throws itk::ExceptionObject naming slice and contour. The result does not depend on
  * the number of threads.
  *
- * \tparam TContourStack type of the stack
- * \tparam TMesh type of the mesh */
-template <typename TContourStack = ContourStack, typename TMesh = DensityMesh<double>>
-class ContourTilingMeshSource : public itk::ProcessObject
+ * \tparam TMesh a \ref DensityMesh
+ * \tparam TImage type of the density image, of any scalar pixel type */
+template <typename TMesh = DensityMesh<double>, typename TImage = itk::Image<float, 3>>
+class ContourTilingMeshSource : public MeshSource<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(ContourTilingMeshSource);
   using Self = ContourTilingMeshSource;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshSource<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(ContourTilingMeshSource, itk::ProcessObject);
+  itkTypeMacro(ContourTilingMeshSource, MeshSource);
 
-  using ContourStackType = TContourStack;
   using MeshType = TMesh;
-  using DensityImageType = itk::Image<float, 3>;
+  using DensityImageType = TImage;
+  static_assert(TImage::ImageDimension == 3, "The density image must be three-dimensional.");
 
-  using Superclass::SetInput;
-  /** The contours. */
+  using itk::ProcessObject::SetInput;
   void
-  SetInput(const TContourStack * stack);
-  const TContourStack *
-  GetInput() const;
+  SetInput(const ContourStack * contours)
+  {
+    this->SetPrimaryInput(const_cast<ContourStack *>(contours));
+  }
+  const ContourStack *
+  GetInput() const
+  {
+    return itkDynamicCastInDebugMode<const ContourStack *>(this->GetPrimaryInput());
+  }
 
-  /** The CT for the metrics that look at density; may be null. */
-  void
-  SetDensityImage(const DensityImageType * image);
-  const DensityImageType *
-  GetDensityImage() const;
+  itkSetInputMacro(DensityImage, TImage);
+  itkGetInputMacro(DensityImage, TImage);
 
-  /** Name of the metric. Default "combined". */
-  itkSetStringMacro(Metric);
-  itkGetStringMacro(Metric);
+  BONE_FILTER_PARAMETERS(TilingParameters, BONE_TILING_PARAMETERS)
 
-  /** A metric of your own in place of a named one; null goes back to the name. */
+  /** A metric in place of the parameter's; null goes back to the parameter. */
   void
   SetMetricObject(std::shared_ptr<const TilingMetric> metric);
 
@@ -73,11 +70,6 @@ public:
   void
   SetCorrespondence(std::shared_ptr<const ContourCorrespondence> correspondence);
 
-  TMesh *
-  GetOutput();
-  const TMesh *
-  GetOutput() const;
-
   /** What the last update met. */
   const TilingReport &
   GetReport() const
@@ -85,20 +77,15 @@ public:
     return m_Report;
   }
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer MakeOutput(DataObjectPointerArraySizeType) override;
-
 protected:
   ContourTilingMeshSource();
   ~ContourTilingMeshSource() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   /** A mesh takes no information from contours. */
   void
   GenerateOutputInformation() override
   {}
-  void
-  GenerateInputRequestedRegion() override;
   void
   GenerateData() override;
   void
@@ -108,7 +95,6 @@ private:
   DensitySampler
   MakeSampler() const;
 
-  std::string                                  m_Metric{ "combined" };
   std::shared_ptr<const TilingMetric>          m_MetricObject;
   std::shared_ptr<const ContourCorrespondence> m_Correspondence;
   TilingReport                                 m_Report;

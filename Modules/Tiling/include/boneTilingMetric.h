@@ -4,12 +4,11 @@
 #ifndef boneTilingMetric_h
 #define boneTilingMetric_h
 
+#include "boneTilingParameters.h"
 #include "boneTypes.h"
 
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace bone
 {
@@ -89,10 +88,9 @@ private:
   double                                  m_Weight;
 };
 
-/** The metric of a name: "span", "area", "volume", "density" or "combined". "density" needs a sampler. Throws
- * std::invalid_argument listing the names. */
+/** Throws std::invalid_argument where the kind is Density and there is no sampler. */
 std::shared_ptr<const TilingMetric>
-MakeTilingMetric(const std::string & name, const DensitySampler & sampler);
+MakeTilingMetric(TilingMetricKind kind, const DensitySampler & sampler);
 } // namespace bone
 
 #endif

@@ -11,7 +11,7 @@
 
 namespace bone
 {
-/** What the tiling met and how it got through; all counts are 0 in the plain case. */
+/** What the tiling met and what it did about it. Counts of what is out of the ordinary are 0 for a plain stack. */
 struct TilingReport
 {
   int sections{ 0 };         ///< pieces of bone over all slices
@@ -29,7 +29,7 @@ struct TilingReport
   int otherAxes{ 0 };        ///< groups that needed another medial axis above
   int filledSlabs{ 0 };      ///< spaces between two slices filled by overlaying the triangulations of the slices
   int filledEnds{ 0 };       ///< ends closed in that way
-  int partedGroups{ 0 };     ///< groups in filled slabs whose pieces do not all overlap and so are not joined
+  int separatedGroups{ 0 };  ///< groups in filled slabs whose pieces do not all overlap and so are not joined
 
   /** The pieces' correspondence in all slabs, as it was given or found. */
   ContourCorrespondence correspondence;

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -75,16 +76,18 @@ PointsAroundVoids(const MeshArrays & mesh)
 class StackTiler
 {
 public:
-  StackTiler(const ContourStack &     stack,
-             const TilingMetric &     metric,
-             const TilingParameters & parameters,
-             ClosedHoles &            closed,
-             TilingReport &           report)
+  StackTiler(const ContourStack & stack,
+             const TilingMetric & metric,
+             const TilingGuide &  guide,
+             ClosedHoles &        closed,
+             TilingReport &       report,
+             const Execution &    execution)
     : m_Stack(stack)
-    , m_Parameters(parameters)
+    , m_Guide(guide)
     , m_Closed(closed)
     , m_Report(report)
-    , m_Slabs(stack, metric, m_Pool, m_Tetrahedra, report)
+    , m_Execution(execution)
+    , m_Slabs(stack, metric, m_Pool, m_Tetrahedra, report, m_Execution)
   {}
 
   /** The mesh; or nothing where holes were found that are voids. */
@@ -96,8 +99,10 @@ public:
     for (int k = 0; k < slices; ++k)
     {
       CollectSlice(k);
+      m_Execution.Report(0.05 * (k + 1) / slices);
     }
     MatchSlices();
+    const Execution slabs = m_Execution.Part(0.1, 0.6);
     for (int k = 0; k < slices; ++k)
     {
       BuildSlice(k);
@@ -105,25 +110,16 @@ public:
       {
         TileSlab(k - 1);
       }
-      Progress(0.5 * (k + 1) / slices);
+      slabs.Report((k + 1.0) / slices);
     }
     CloseOutermost(0, false, m_Stack.GetOpenStart());
     CloseOutermost(slices - 1, true, m_Stack.GetOpenEnd());
-    RunFillings();
-    Progress(0.9);
+    RunFillings(m_Execution.Part(0.6, 0.95));
+    m_Execution.Report(0.95);
     return Assemble();
   }
 
 private:
-  void
-  Progress(double share) const
-  {
-    if (m_Parameters.progress)
-    {
-      m_Parameters.progress(share);
-    }
-  }
-
   /** Sorts the contours of slice k into pieces. */
   void
   CollectSlice(int k)
@@ -139,7 +135,7 @@ private:
     {
       heights.push_back(m_Stack.GetHeight(k));
     }
-    m_Groups = MatchPieces(m_Pieces, heights, m_Parameters.correspondence.get());
+    m_Groups = MatchPieces(m_Pieces, heights, m_Guide.correspondence.get());
     for (int k = 0; k < static_cast<int>(m_Groups.size()); ++k)
     {
       auto & used = m_Report.correspondence.slabs[k];
@@ -186,7 +182,8 @@ private:
   Section
   Build(int k, std::size_t i, const PlanarTree & carried, double tolerance, TilingReport & report)
   {
-    return BuildSection(m_Stack, m_Pieces[k][i], carried, tolerance, k, m_Stack.GetHeight(k), m_Pool, report);
+    return BuildSection(
+      m_Stack, m_Pieces[k][i], carried, tolerance, k, m_Stack.GetHeight(k), m_Pool, report, m_Execution);
   }
 
   /** The medial axis of some sections of a slice, joined by bridges; empty where there is none. */
@@ -234,8 +231,8 @@ private:
       return;
     }
     m_Tetrahedra.resize(begin);
-    m_Fillings.push_back([this, k, low, high] {
-      return FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool);
+    m_Fillings.push_back([this, k, low, high](const Execution & execution) {
+      return FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool, execution);
     });
     ++m_Report.filledSlabs;
   }
@@ -329,41 +326,31 @@ private:
   FillEnd(const Section & section, double here, double height, bool above)
   {
     const double reach = FilledEndFactor * height;
-    m_Fillings.push_back([this, &section, here, reach, above] {
+    m_Fillings.push_back([this, &section, here, reach, above](const Execution & execution) {
       const std::vector<Section> one{ section }, none;
-      return above ? FillSlab(m_Stack, one, none, { { { 0 }, {} } }, here, here + reach, m_Pool)
-                   : FillSlab(m_Stack, none, one, { { {}, { 0 } } }, here - reach, here, m_Pool);
+      return above ? FillSlab(m_Stack, one, none, { { { 0 }, {} } }, here, here + reach, m_Pool, execution)
+                   : FillSlab(m_Stack, none, one, { { {}, { 0 } } }, here - reach, here, m_Pool, execution);
     });
     ++m_Report.filledEnds;
   }
 
-  /** Fills what was put off; the spaces do not depend on each other. */
+  /** Fills what was put off; the spaces do not depend on each other. Of several errors the first one's is thrown. */
   void
-  RunFillings()
+  RunFillings(const Execution & execution)
   {
     std::vector<SlabFilling>        fillings(m_Fillings.size());
     std::vector<std::exception_ptr> errors(m_Fillings.size());
-    const auto                      body = [&](std::size_t i) {
+    const auto                      count = static_cast<double>(m_Fillings.size());
+    execution.For(m_Fillings.size(), [&](std::size_t i) {
       try
       {
-        fillings[i] = m_Fillings[i]();
+        fillings[i] = m_Fillings[i](execution.Part(i / count, (i + 1) / count));
       }
-      catch (...)
+      catch (const std::runtime_error &)
       {
         errors[i] = std::current_exception();
       }
-    };
-    if (m_Parameters.parallel)
-    {
-      m_Parameters.parallel(m_Fillings.size(), body);
-    }
-    else
-    {
-      for (std::size_t i = 0; i < m_Fillings.size(); ++i)
-      {
-        body(i);
-      }
-    }
+    });
     for (std::size_t i = 0; i < fillings.size(); ++i)
     {
       if (errors[i])
@@ -380,7 +367,7 @@ private:
   Report(const SlabFilling & filling)
   {
     const int    k = filling.slice;
-    const auto & given = m_Parameters.correspondence;
+    const auto & given = m_Guide.correspondence;
     const auto   list = [](const std::vector<int> & ids) {
       std::string text;
       for (int id : ids)
@@ -389,7 +376,7 @@ private:
       }
       return text;
     };
-    for (int g : filling.parted)
+    for (int g : filling.separated)
     {
       const std::string text = "slice " + std::to_string(k) + ", contour " + list(IdsOf(k, m_Groups[k][g].lower)) +
                                ": corresponds to contour " + list(IdsOf(k + 1, m_Groups[k][g].upper)) +
@@ -398,7 +385,7 @@ private:
       {
         throw std::runtime_error(text + " and cannot be joined to it; use a smaller slice step");
       }
-      ++m_Report.partedGroups;
+      ++m_Report.separatedGroups;
       m_Report.notes.push_back(text + "; what does not overlap ends there");
     }
   }
@@ -510,27 +497,28 @@ private:
       mesh.region.push_back(t.region);
     }
     mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+    m_Execution.Report(0.98);
     if (FindVoids(mesh))
     {
       return std::nullopt;
     }
     RemoveUnusedPoints(mesh);
-    Progress(1.0);
     return mesh;
   }
 
-  const ContourStack &                      m_Stack;
-  const TilingParameters &                  m_Parameters;
-  ClosedHoles &                             m_Closed;
-  TilingReport &                            m_Report;
-  VertexPool                                m_Pool;
-  std::vector<TiledTetra>                   m_Tetrahedra;
-  SlabTiler                                 m_Slabs;
-  std::vector<std::vector<Section>>         m_Sections;
-  std::vector<std::vector<PieceOutline>>    m_Pieces;
-  std::vector<PlanarTree>                   m_Carried;  ///< axes from below for the slice built last
-  std::vector<std::vector<Group>>           m_Groups;   ///< of slice k and k + 1
-  std::vector<std::function<SlabFilling()>> m_Fillings; ///< put off until all slices are there
+  const ContourStack &                                       m_Stack;
+  const TilingGuide &                                        m_Guide;
+  ClosedHoles &                                              m_Closed;
+  TilingReport &                                             m_Report;
+  Execution                                                  m_Execution;
+  VertexPool                                                 m_Pool;
+  std::vector<TiledTetra>                                    m_Tetrahedra;
+  SlabTiler                                                  m_Slabs;
+  std::vector<std::vector<Section>>                          m_Sections;
+  std::vector<std::vector<PieceOutline>>                     m_Pieces;
+  std::vector<PlanarTree>                                    m_Carried;  ///< axes from below for the slice built last
+  std::vector<std::vector<Group>>                            m_Groups;   ///< of slice k and k + 1
+  std::vector<std::function<SlabFilling(const Execution &)>> m_Fillings; ///< put off until all slices are there
 };
 /** A metric of places in space, for steps in a frame. */
 class MetricInSpace : public TilingMetric
@@ -562,31 +550,34 @@ private:
 };
 
 MeshArrays
-TileInFrame(const OwnFrame & frame, const TilingParameters & parameters, TilingReport & report)
+TileInFrame(const OwnFrame & frame, const TilingGuide & guide, TilingReport & report, const Execution & execution)
 {
   const SpanLengthMetric              span;
   std::unique_ptr<const TilingMetric> given;
-  if (parameters.metric)
+  if (guide.metric)
   {
-    given = std::make_unique<MetricInSpace>(*parameters.metric, frame);
+    given = std::make_unique<MetricInSpace>(*guide.metric, frame);
   }
   const ContourStack & stack = frame.GetStack();
   ClosedHoles          holes(stack.GetSlices().size());
+  // Tiling again, here or in another frame, goes through the same progress, which stands still until it gets further.
   for (;;)
   {
     report = TilingReport();
-    StackTiler tiler(stack, given ? *given : span, parameters, holes, report);
+    StackTiler tiler(stack, given ? *given : span, guide, holes, report, execution.Part(0.0, 0.95));
     if (auto mesh = tiler.Run())
     {
       for (Vector3 & p : mesh->points)
       {
         p = frame.ToGivenPlace(p);
       }
+      execution.Report(0.95);
       const MeshValidation validation = ValidateMesh(*mesh);
       if (!validation.IsValid())
       {
         throw std::runtime_error("the contours cannot be tiled into a valid mesh: " + validation.Summary());
       }
+      execution.Report(1.0);
       return std::move(*mesh);
     }
   }
@@ -594,7 +585,7 @@ TileInFrame(const OwnFrame & frame, const TilingParameters & parameters, TilingR
 } // namespace
 
 MeshArrays
-TileContours(const ContourStack & stack, const TilingParameters & parameters, TilingReport & report)
+TileContours(const ContourStack & stack, const TilingGuide & guide, TilingReport & report, const Execution & execution)
 {
   std::size_t closed = 0, slices = 0;
   for (const ContourSlice & slice : stack.GetSlices())
@@ -613,11 +604,11 @@ TileContours(const ContourStack & stack, const TilingParameters & parameters, Ti
   // that are flat in space, contours that nearly touch), the coordinates in space are taken.
   try
   {
-    return TileInFrame(OwnFrame(stack, true), parameters, report);
+    return TileInFrame(OwnFrame(stack, true), guide, report, execution);
   }
   catch (const std::runtime_error &)
   {
-    return TileInFrame(OwnFrame(stack, false), parameters, report);
+    return TileInFrame(OwnFrame(stack, false), guide, report, execution);
   }
 }
 } // namespace bone

@@ -92,29 +92,20 @@ CombinedMetric::Evaluate(const TilingStep & step) const
 }
 
 std::shared_ptr<const TilingMetric>
-MakeTilingMetric(const std::string & name, const DensitySampler & sampler)
+MakeTilingMetric(TilingMetricKind kind, const DensitySampler & sampler)
 {
-  if (name == "span")
+  switch (kind)
   {
-    return std::make_shared<SpanLengthMetric>();
+    case TilingMetricKind::Span:
+      return std::make_shared<SpanLengthMetric>();
+    case TilingMetricKind::Area:
+      return std::make_shared<AreaMetric>();
+    case TilingMetricKind::Volume:
+      return std::make_shared<VolumeMetric>();
+    case TilingMetricKind::Density:
+      return std::make_shared<DensityDeviationMetric>(sampler);
+    default:
+      return std::make_shared<CombinedMetric>(sampler);
   }
-  if (name == "area")
-  {
-    return std::make_shared<AreaMetric>();
-  }
-  if (name == "volume")
-  {
-    return std::make_shared<VolumeMetric>();
-  }
-  if (name == "density")
-  {
-    return std::make_shared<DensityDeviationMetric>(sampler);
-  }
-  if (name == "combined")
-  {
-    return std::make_shared<CombinedMetric>(sampler);
-  }
-  throw std::invalid_argument("There is no tiling metric '" + name +
-                              "'; choose span, area, volume, density or combined.");
 }
 } // namespace bone

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "../src/boneConstrainedTriangulation.h"
+#include "boneConstrainedTriangulation.h"
 
 #include "bonePredicates.h"
 

@@ -4,10 +4,16 @@
 #include "boneContourTilingMeshSource.h"
 
 #include "boneMeshValidator.h"
+#include "boneRandomStack.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <itkCastImageFilter.h>
+#include <itkImageRegionIteratorWithIndex.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -233,7 +239,7 @@ TEST(ContourTilingMeshSource, CorrespondingPiecesThatCannotBeJoinedEndAndAreRepo
   const auto validation = bone::ValidateMesh(source->GetOutput()->GetArrays());
   EXPECT_TRUE(validation.IsValid()) << validation.Summary();
   EXPECT_EQ(validation.components, 4);
-  EXPECT_EQ(source->GetReport().partedGroups, 1);
+  EXPECT_EQ(source->GetReport().separatedGroups, 1);
   EXPECT_THAT(source->GetReport().notes, testing::Contains(testing::HasSubstr("does not overlap all of it")));
 
   source->SetCorrespondence(
@@ -391,9 +397,47 @@ TEST(ContourTilingMeshSource, RunsAgainOnlyWhenSomethingChanged)
   source->Update();
   source->Update();
   EXPECT_EQ(runs, 1);
-  source->SetMetric("area");
+  source->SetMetric(bone::TilingMetricKind::Area);
   source->Update();
   EXPECT_EQ(runs, 2);
+}
+
+TEST(ContourTilingMeshSource, ReportsProgressThatNeverGoesBack)
+{
+  auto source = Source::New();
+  source->SetInput(bone::RandomStack(50).Make());
+  std::vector<float> steps;
+  source->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) { steps.push_back(source->GetProgress()); });
+  source->Update();
+  EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+  EXPECT_GE(steps.size(), 10U);
+  EXPECT_EQ(steps.back(), 1.0F);
+}
+
+TEST(ContourTilingMeshSource, AnAbortIsNoticedSoonAndLeavesTheFilterReusable)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto stack = bone::RandomStack(50).Make();
+  auto       source = Source::New();
+  source->SetInput(stack);
+  for (const float when : { 0.02F, 0.2F, 0.4F, 0.6F, 0.8F })
+  {
+    Clock::time_point asked;
+    const auto        observer = source->AddObserver(itk::ProgressEvent(), [&](const itk::EventObject &) {
+      if (source->GetProgress() >= when && !source->GetAbortGenerateData())
+      {
+        asked = Clock::now();
+        source->AbortGenerateDataOn();
+      }
+    });
+    EXPECT_THROW(source->Update(), itk::ProcessAborted) << when;
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked).count(), 0.5) << when;
+    source->RemoveObserver(observer);
+  }
+  source->Update();
+  const MeshArrays expected = Tile(stack);
+  EXPECT_EQ(source->GetOutput()->GetArrays().tetrahedra, expected.tetrahedra);
+  EXPECT_EQ(source->GetOutput()->GetArrays().points, expected.points);
 }
 
 TEST(ContourTilingMeshSource, EveryMetricTilesTheSameBody)
@@ -401,24 +445,95 @@ TEST(ContourTilingMeshSource, EveryMetricTilesTheSameBody)
   auto stack = MakeStack(std::vector<std::vector<Loop>>(4, Shaft), 2.0);
   stack->SetOpenStart(true);
   stack->SetOpenEnd(true);
-  for (const char * metric : { "span", "area", "volume", "combined" })
+  using Kind = bone::TilingMetricKind;
+  for (const Kind metric : { Kind::Span, Kind::Area, Kind::Volume, Kind::Combined })
   {
     auto source = Source::New();
     source->SetInput(stack);
     source->SetMetric(metric);
     source->Update();
-    EXPECT_NEAR(Volume(source->GetOutput()->GetArrays(), 0), 6 * Pi * 120 * PolygonShare(24), 1e-6) << metric;
+    EXPECT_NEAR(Volume(source->GetOutput()->GetArrays(), 0), 6 * Pi * 120 * PolygonShare(24), 1e-6)
+      << bone::ParameterText(metric);
   }
 }
 
 TEST(ContourTilingMeshSource, SaysWhatIsWrong)
 {
-  auto source = Source::New();
+  auto       source = Source::New();
+  const auto throws = [&source](const char * words) {
+    EXPECT_THAT([&] { source->Update(); }, testing::ThrowsMessage<itk::ExceptionObject>(testing::HasSubstr(words)));
+  };
+  throws("Contours");
   source->SetInput(MakeStack({ Shaft }, 2.0));
-  EXPECT_THROW(source->Update(), itk::ExceptionObject);
+  throws("at least two slices");
   source->SetInput(MakeStack(std::vector<std::vector<Loop>>(3, Shaft), 2.0));
-  source->SetMetric("density");
-  EXPECT_THROW(source->Update(), itk::ExceptionObject);
-  source->SetMetric("longest");
-  EXPECT_THROW(source->Update(), itk::ExceptionObject);
+  source->SetMetric(bone::TilingMetricKind::Density);
+  throws("DensityImage");
+}
+
+/** Types of the CT and of the mesh's coordinates. */
+template <typename TPixel, typename TCoordinate>
+struct Types
+{
+  using Image = itk::Image<TPixel, 3>;
+  using Mesh = bone::DensityMesh<TCoordinate>;
+};
+
+template <typename TTypes>
+class ContourTilingMeshSourceOfTypes : public testing::Test
+{
+};
+
+using AllTypes = testing::Types<Types<short, double>,
+                                Types<float, double>,
+                                Types<double, double>,
+                                Types<short, float>,
+                                Types<float, float>,
+                                Types<double, float>>;
+TYPED_TEST_SUITE(ContourTilingMeshSourceOfTypes, AllTypes);
+
+TYPED_TEST(ContourTilingMeshSourceOfTypes, FollowsTheDensityAlike)
+{
+  using Image = typename TypeParam::Image;
+  using Mesh = typename TypeParam::Mesh;
+  auto                       image = Image::New();
+  typename Image::RegionType region;
+  region.SetIndex({ { -15, -13, -2 } });
+  region.SetSize({ { 31, 27, 12 } });
+  image->SetRegions(region);
+  image->Allocate();
+  for (itk::ImageRegionIteratorWithIndex<Image> it(image, region); !it.IsAtEnd(); ++it)
+  {
+    const auto & i = it.GetIndex(); // whole numbers, which all pixel types hold
+    it.Set(static_cast<typename Image::PixelType>(40 * i[0] * (i[2] % 3) + 7 * i[1] * i[1]));
+  }
+  auto       stack = MakeStack(std::vector<std::vector<Loop>>(4, Shaft), 2.0);
+  const auto tile = [&stack, &image](auto source) {
+    source->SetInput(stack);
+    source->SetMetric(bone::TilingMetricKind::Density);
+    if constexpr (std::is_same_v<decltype(source), Source::Pointer>)
+    {
+      using Cast = itk::CastImageFilter<Image, Source::DensityImageType>;
+      auto cast = Cast::New();
+      cast->SetInput(image);
+      cast->Update();
+      source->SetDensityImage(cast->GetOutput());
+    }
+    else
+    {
+      source->SetDensityImage(image);
+    }
+    source->Update();
+    return source->GetOutput()->GetArrays();
+  };
+  const MeshArrays expected = tile(Source::New());
+  const MeshArrays mesh = tile(bone::ContourTilingMeshSource<Mesh, Image>::New());
+  EXPECT_NE(expected.tetrahedra, Tile(stack).tetrahedra);
+  EXPECT_EQ(mesh.tetrahedra, expected.tetrahedra);
+  EXPECT_EQ(mesh.region, expected.region);
+  ASSERT_EQ(mesh.points.size(), expected.points.size());
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    EXPECT_NEAR((mesh.points[p] - expected.points[p]).norm(), 0.0, 1e-5);
+  }
 }

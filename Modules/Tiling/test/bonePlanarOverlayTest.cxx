@@ -1,9 +1,9 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "../src/bonePlanarOverlay.h"
+#include "bonePlanarOverlay.h"
 
-#include "../src/boneConstrainedTriangulation.h"
+#include "boneConstrainedTriangulation.h"
 #include "bonePredicates.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(PlanarOverlay, CoversEveryTriangleOfBothExactlyOnce)
   {
     const BoxTriangulation boxes[2] = { RandomBox(2 * seed, 5 + 12 * static_cast<int>(seed)),
                                         RandomBox(2 * seed + 1, 60) };
-    const auto             overlay = bone::tiling::Overlay(boxes[0], boxes[1]);
+    const auto             overlay = bone::tiling::Overlay(boxes[0], boxes[1], bone::Execution());
     for (int side = 0; side < 2; ++side)
     {
       std::vector<double> covered(boxes[side].triangles.size(), 0.0);
@@ -86,7 +86,7 @@ TEST(PlanarOverlay, CoversEveryTriangleOfBothExactlyOnce)
 TEST(PlanarOverlay, ChainsRunAlongTheirEdges)
 {
   const BoxTriangulation boxes[2] = { RandomBox(7, 30), RandomBox(8, 30) };
-  const auto             overlay = bone::tiling::Overlay(boxes[0], boxes[1]);
+  const auto             overlay = bone::tiling::Overlay(boxes[0], boxes[1], bone::Execution());
   for (int side = 0; side < 2; ++side)
   {
     for (const auto & [edge, chain] : overlay.chains[side])
@@ -105,13 +105,13 @@ TEST(PlanarOverlay, ChainsRunAlongTheirEdges)
 
 TEST(PlanarOverlay, OfEmptyBoxesIsTheBox)
 {
-  const auto overlay = bone::tiling::Overlay(RandomBox(0, 0), RandomBox(0, 0));
+  const auto overlay = bone::tiling::Overlay(RandomBox(0, 0), RandomBox(0, 0), bone::Execution());
   EXPECT_EQ(overlay.points.size(), 4u);
   EXPECT_EQ(overlay.triangles.size(), 2u);
 }
 
 TEST(PlanarOverlay, RefusesVerticesInOnePlace)
 {
-  EXPECT_THROW(bone::tiling::Overlay(RandomBox(5, 10), RandomBox(5, 10)), std::runtime_error);
+  EXPECT_THROW(bone::tiling::Overlay(RandomBox(5, 10), RandomBox(5, 10), bone::Execution()), std::runtime_error);
 }
 } // namespace

@@ -48,7 +48,7 @@ Tiling(benchmark::State & state)
   for (auto _ : state)
   {
     bone::TilingReport report;
-    tetrahedra = bone::TileContours(*stack, bone::TilingParameters(), report).tetrahedra.size();
+    tetrahedra = bone::TileContours(*stack, {}, report).tetrahedra.size();
   }
   state.counters["tetrahedra"] = static_cast<double>(tetrahedra);
   state.SetComplexityN(static_cast<benchmark::IterationCount>(tetrahedra));

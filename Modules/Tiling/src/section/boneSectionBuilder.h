@@ -4,8 +4,9 @@
 #ifndef boneSectionBuilder_h
 #define boneSectionBuilder_h
 
+#include "boneChordalAxis.h"
+#include "boneExecution.h"
 #include "bonePieceOutline.h"
-#include "boneRingTriangulation.h"
 #include "boneTilingTypes.h"
 
 namespace bone
@@ -28,7 +29,8 @@ BuildSection(const ContourStack & stack,
              int                  slice,
              double               height,
              VertexPool &         pool,
-             TilingReport &       report);
+             TilingReport &       report,
+             const Execution &    execution);
 /** The outer contour of a section in the plane. */
 std::vector<Vector2>
 OuterPolygon(const std::vector<Vector2> & plane, const Section & section);

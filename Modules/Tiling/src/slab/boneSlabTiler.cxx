@@ -104,6 +104,7 @@ SlabTiler::KnitFrom(const Section &          lower,
   bool           more = true;
   for (int start = 0; more; ++start)
   {
+    m_Execution.ThrowIfAborted();
     if (budget-- <= 0)
     {
       return false;

@@ -4,6 +4,7 @@
 #ifndef boneSteinerCollapse_h
 #define boneSteinerCollapse_h
 
+#include "boneExecution.h"
 #include "boneMeshArrays.h"
 
 namespace bone
@@ -27,7 +28,10 @@ struct SteinerPlaces
  * outside of the bone, of whose cells no more is asked. Returns the cells left and all points, which keep their ids.
  * Deterministic. */
 MeshArrays
-CollapseSteinerPoints(const MeshArrays & mesh, IdType firstSteiner, const SteinerPlaces & places);
+CollapseSteinerPoints(const MeshArrays &    mesh,
+                      IdType                firstSteiner,
+                      const SteinerPlaces & places,
+                      const Execution &     execution);
 } // namespace tiling
 } // namespace bone
 

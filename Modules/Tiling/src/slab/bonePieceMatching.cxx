@@ -302,7 +302,7 @@ private:
     }
   }
 
-  /** What hangs together in slab k. */
+  /** The groups of pieces that links connect in slab k. */
   std::vector<Group>
   GroupsOf(int k) const
   {

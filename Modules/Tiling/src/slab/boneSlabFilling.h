@@ -5,6 +5,7 @@
 #define boneSlabFilling_h
 
 #include "boneContourStack.h"
+#include "boneExecution.h"
 #include "bonePieceMatching.h"
 #include "boneRingKnit.h"
 #include "boneSectionBuilder.h"
@@ -20,7 +21,7 @@ struct SlabFilling
   std::vector<int>        layers;     ///< of its own vertices
   std::vector<TiledTetra> tetrahedra; ///< own vertex i stands as -1 - i
   int                     slice{ 0 };
-  std::vector<int>        parted; ///< groups whose pieces do not all overlap: they are not joined here
+  std::vector<int>        separated; ///< groups whose pieces do not all overlap: they are not joined here
 };
 
 /** \brief Fills the space between all sections of two slices, whatever branches, begins or ends there.
@@ -28,11 +29,11 @@ struct SlabFilling
  * 1. Each slice's triangulation is completed to one of a box by a constrained Delaunay triangulation of what is outside
  *    the bone, and the two are overlaid (\ref PlanarOverlay).
  *    The upper slice is moved against the lower one first if much more bone lies over bone then.
- * 2. The overlay, placed between the slices, parts the slab: a triangle of a slice and the overlay's triangles in it
+ * 2. The overlay, placed between the slices, divides the slab: a triangle of a slice and the overlay's triangles in it
  *    span a convex prism, which is filled with tetrahedra from its smallest vertex. They take the region of the slice's
  *    triangle. Where regions lie on top of each other that may not touch (trabecular bone below nothing), or pieces
- * that do not belong together, further layers of prisms with the regions in between part them. Every step is a terrace
- *    now; the mesh is valid, and every interface a 2-manifold, by construction.
+ * that do not belong together, further layers of prisms with the regions in between separate them. Every step is a
+ * terrace now; the mesh is valid, and every interface a 2-manifold, by construction.
  * 3. Where the surfaces should run is known from the contours' distances (\ref FindSlabSurface). The vertices in
  * between are collapsed onto those of the slices wherever orientation (exact) and the link condition for all regions,
  * outside included, allow, and surfaces stay within 0.12 of the slab's height of where they should run: terraces become
@@ -40,8 +41,8 @@ struct SlabFilling
  * can pass through another.
  *
  * Vertices that could not be collapsed are moved to where they should be and stay. Pieces of a group that do not
- * overlap however the slices are moved end and begin there; the group is named in `parted`. Throws std::runtime_error
- * where the contours are too close to be told apart. */
+ * overlap however the slices are moved end and begin there; the group is named in `separated`. Throws
+ * std::runtime_error where the contours are too close to be told apart. */
 SlabFilling
 FillSlab(const ContourStack &         stack,
          const std::vector<Section> & lower,
@@ -49,7 +50,8 @@ FillSlab(const ContourStack &         stack,
          const std::vector<Group> &   groups,
          double                       lowerHeight,
          double                       upperHeight,
-         const VertexPool &           pool);
+         const VertexPool &           pool,
+         const Execution &            execution);
 } // namespace tiling
 } // namespace bone
 

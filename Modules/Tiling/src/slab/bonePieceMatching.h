@@ -24,7 +24,7 @@ struct Group
  * 2. by distance, a piece without counterpart below and one without above, and
  * 3. a piece without counterpart and one that has some, where nothing else joins them anywhere: a piece that begins
  *    beside the body and runs into it further on is no handle.
- * A group is all that hangs together by such links, any number on both slices; a piece without counterpart is a group
+ * A group is all pieces that such links connect, any number on both slices; a piece without counterpart is a group
  * of its own. Throws std::runtime_error where `given` names a contour that is not there, or twice. */
 std::vector<std::vector<Group>>
 MatchPieces(const std::vector<std::vector<PieceOutline>> & pieces,

@@ -46,6 +46,11 @@ MakeSide(const VertexPool &           pool,
          const std::vector<int> &     groupOf,
          const SlabBounds &           bounds,
          const Vector2 &              shift);
+
+/** The overlay of both slices' triangulations. Vertices of the upper one that lie on or close to those of the lower one
+ * are moved a little, up to some tries. Throws std::runtime_error where the triangulations cannot be overlaid. */
+PlanarOverlay
+OverlaySides(const SlabSide & lower, const SlabSide & upper, const Execution & execution);
 } // namespace tiling
 } // namespace bone
 

@@ -86,10 +86,11 @@ struct Quadric
 class SteinerCollapser
 {
 public:
-  SteinerCollapser(const MeshArrays & mesh, IdType first, const SteinerPlaces & places)
+  SteinerCollapser(const MeshArrays & mesh, IdType first, const SteinerPlaces & places, const Execution & execution)
     : m_Complex(mesh)
     , m_First(first)
     , m_Places(places)
+    , m_Execution(execution)
     , m_Quadrics(mesh.points.size() - first)
     , m_Dirty(mesh.points.size(), 1)
     , m_Gone(mesh.points.size(), 0)
@@ -133,6 +134,7 @@ public:
       {
         const IdType v = m_Queue.top().second;
         m_Queue.pop();
+        m_Execution.ThrowIfAborted();
         if (m_Gone[v])
         {
           continue;
@@ -160,6 +162,7 @@ public:
     {
       for (IdType v = m_First; v < points; ++v)
       {
+        m_Execution.ThrowIfAborted();
         const Vector3 from = m_Complex.Points()[v];
         if (m_Gone[v] || m_Complex.Dimension(v) == 3 || from == Ideal(v))
         {
@@ -222,6 +225,7 @@ private:
   bool
   Update(IdType v)
   {
+    m_Execution.ThrowIfAborted();
     m_Dirty[v] = 0;
     const bool onSurface = m_Complex.Dimension(v) < 3;
     m_Rated.clear();
@@ -401,6 +405,7 @@ private:
   {
     m_Complex.Collapse(v, w);
     m_Gone[v] = 1;
+    m_Execution.Report(static_cast<double>(++m_Collapsed) / static_cast<double>(m_Quadrics.size()));
     if (w >= m_First)
     {
       m_Quadrics[w - m_First] += m_Quadrics[v - m_First];
@@ -415,9 +420,11 @@ private:
   TetraComplex                                                        m_Complex;
   IdType                                                              m_First;
   const SteinerPlaces &                                               m_Places;
+  const Execution &                                                   m_Execution;
   std::vector<Quadric>                                                m_Quadrics; ///< of the Steiner points
   Vector3                                                             m_Origin{ Vector3::Zero() };
   double                                                              m_Floor{ 0.0 };
+  std::size_t                                                         m_Collapsed{ 0 };
   std::vector<char>                                                   m_Dirty, m_Gone;
   std::vector<IdType>                                                 m_Target;
   std::vector<double>                                                 m_Cost;
@@ -428,11 +435,14 @@ private:
 } // namespace
 
 MeshArrays
-CollapseSteinerPoints(const MeshArrays & mesh, IdType firstSteiner, const SteinerPlaces & places)
+CollapseSteinerPoints(const MeshArrays &    mesh,
+                      IdType                firstSteiner,
+                      const SteinerPlaces & places,
+                      const Execution &     execution)
 {
   MeshArrays whole = mesh;
   whole.neighbors = ComputeFaceNeighbors(whole.tetrahedra);
-  SteinerCollapser collapser(whole, firstSteiner, places);
+  SteinerCollapser collapser(whole, firstSteiner, places, execution);
   collapser.Run(FirstFloor);
   collapser.MoveToIdeal();
   collapser.Run(FirstFloor);

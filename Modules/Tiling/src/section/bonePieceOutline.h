@@ -35,7 +35,7 @@ struct PieceOutline
   std::vector<Axis> axes;
 
   /** Whether the loops are nested in each other, region by region inward, with a hole in none but the outer contour of
-   * a piece without layers: what can be parted into rings. */
+   * a piece without layers: what can be divided into rings. */
   bool
   IsChain() const;
 };

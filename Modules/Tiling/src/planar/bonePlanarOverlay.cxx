@@ -100,12 +100,13 @@ public:
   }
 
   PlanarOverlay
-  Run()
+  Run(const Execution & execution)
   {
     const TriangleGrid grid(*m_Boxes[1]);
     std::vector<int>   near;
     for (std::size_t t = 0; t < m_Boxes[0]->triangles.size(); ++t)
     {
+      execution.ThrowIfAborted();
       grid.Find(m_Boxes[0]->points, m_Boxes[0]->triangles[t], near);
       for (int u : near)
       {
@@ -327,9 +328,9 @@ private:
 } // namespace
 
 PlanarOverlay
-Overlay(const BoxTriangulation & first, const BoxTriangulation & second)
+Overlay(const BoxTriangulation & first, const BoxTriangulation & second, const Execution & execution)
 {
-  return Overlayer(first, second).Run();
+  return Overlayer(first, second).Run(execution);
 }
 } // namespace tiling
 } // namespace bone

@@ -1,9 +1,10 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneChordalAxis.h"
+
 #include "boneContourStack.h"
 #include "bonePredicates.h"
-#include "boneRingTriangulation.h"
 
 #include <algorithm>
 #include <cmath>

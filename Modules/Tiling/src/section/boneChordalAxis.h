@@ -1,8 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#ifndef boneRingTriangulation_h
-#define boneRingTriangulation_h
+#ifndef boneChordalAxis_h
+#define boneChordalAxis_h
 
 #include "boneTilingTypes.h"
 
@@ -10,17 +10,6 @@ namespace bone
 {
 namespace tiling
 {
-/** Triangulates the ring between an outer closed contour and an inner walk (loop, tree or point) with edges that span
- * from one to the other, by dynamic programming on span length and circumradius over several start pairs. All
- * triangles are counter-clockwise (exact). Returns the mean cost of a triangle (mm), infinite where no such
- * triangulation was found. */
-double
-TriangulateRing(const std::vector<Vector2> & plane, const Walk & outer, const Walk & inner, Merge & ring);
-
-/** The ring between a walk and itself: no triangles. */
-Merge
-DegenerateRing(const Walk & walk);
-
 /** Constrained Delaunay triangulation of a simple counter-clockwise polygon without further points; triples of
  * positions in `polygon`, counter-clockwise. Empty where the polygon crosses itself. */
 std::vector<std::array<int, 3>>

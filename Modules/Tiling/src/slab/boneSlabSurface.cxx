@@ -175,7 +175,7 @@ private:
     return i;
   }
 
-  static constexpr double OnContour = 1e-3; // mm, more than vertices are moved to part them
+  static constexpr double OnContour = 1e-3; // mm, more than vertices are moved to separate them
 
   const PlanarOverlay &              m_Overlay;
   std::array<TriangleTree, 2>        m_Contours;
@@ -218,7 +218,7 @@ FindSlabSurface(const std::array<const BoxTriangulation *, 2> & boxes,
         {
           for (int k : v)
           {
-            // Where pieces are parted a surface may have no height of its own: the middle.
+            // Where pieces are separated, a surface may have no height of its own: the middle.
             sum[p * points + k] += heights[layer - 1][k] >= 0 ? heights[layer - 1][k] : (p + 1.0) / (planes + 1.0);
             count[p * points + k] += 1.0;
           }

@@ -5,6 +5,7 @@
 #define boneSlabTiler_h
 
 #include "boneContourStack.h"
+#include "boneExecution.h"
 #include "bonePieceMatching.h"
 #include "boneRingKnit.h"
 #include "boneSectionBuilder.h"
@@ -23,12 +24,14 @@ public:
             const TilingMetric &      metric,
             VertexPool &              pool,
             std::vector<TiledTetra> & tetrahedra,
-            TilingReport &            report)
+            TilingReport &            report,
+            const Execution &         execution)
     : m_Stack(stack)
     , m_Metric(metric)
     , m_Pool(pool)
     , m_Tetrahedra(tetrahedra)
     , m_Report(report)
+    , m_Execution(execution)
   {}
 
   /** Knits the sections of two planes that belong together, if that can be done as it is. */
@@ -67,6 +70,7 @@ private:
   VertexPool &              m_Pool;
   std::vector<TiledTetra> & m_Tetrahedra;
   TilingReport &            m_Report;
+  const Execution &         m_Execution;
   EdgeSet                   m_UsedEdges; ///< edges that bridges run along
   std::set<int>             m_Collapsed; ///< vertices of axes at which a layer ends
 };

@@ -26,7 +26,6 @@ namespace tiling
 {
 namespace
 {
-constexpr int    OverlayTries = 6;
 constexpr double ShiftGain = 1.5;   ///< a shift leans upright walls too, so it must pay
 constexpr double LinkShare = 0.15;  ///< of a part's area, by which two parts of a layer belong together
 constexpr double SmallShift = 0.03; // mm
@@ -34,78 +33,6 @@ constexpr int    SmallShifts = 3;
 constexpr int    UsualShifts = 2;         ///< looked at always; others where these do not do
 constexpr double LeastVolume = 1e-11;     ///< mm^3, of a cell that is not thin
 constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
-constexpr double NearPoints = 0.1;        // mm
-constexpr double PartPoints = 0.4;        // mm
-constexpr double Shift = 1e-5;            // mm, parts vertices of the two slices that lie over each other
-
-/** Whether a vertex lies inside one region and may be moved a little without turning a triangle over. */
-bool
-IsInner(const SlabSide & side, int vertex)
-{
-  int region = 0;
-  for (std::size_t t = 0; t < side.box.triangles.size(); ++t)
-  {
-    const auto & ids = side.box.triangles[t];
-    const auto   at = std::find(ids.begin(), ids.end(), vertex);
-    if (at != ids.end())
-    {
-      if (side.region[t] == 0 || (region != 0 && side.region[t] != region))
-      {
-        return false;
-      }
-      region = side.region[t];
-      const auto      i = static_cast<std::size_t>(at - ids.begin());
-      const Vector2 & a = side.box.points[ids[(i + 1) % 3]];
-      const Vector2 & b = side.box.points[ids[(i + 2) % 3]];
-      const Vector2   x = side.box.points[vertex] - a, d = b - a;
-      if ((d.x() * x.y() - d.y() * x.x()) < 4 * PartPoints * d.norm())
-      {
-        return false;
-      }
-    }
-  }
-  return region != 0;
-}
-
-PlanarOverlay
-OverlaySides(const SlabSide & lower, const SlabSide & upper)
-{
-  // Medial axes of both slices often meet in nearly the same point, whose fans of triangles would cross each other in a
-  // knot of that size.
-  BoxTriangulation parted = upper.box;
-  for (std::size_t v = SlabSide::Corners; v < parted.points.size(); ++v)
-  {
-    const bool near =
-      std::any_of(lower.box.points.begin() + SlabSide::Corners, lower.box.points.end(), [&](const Vector2 & q) {
-        return (q - upper.box.points[v]).squaredNorm() < NearPoints * NearPoints;
-      });
-    if (near && IsInner(upper, static_cast<int>(v)))
-    {
-      parted.points[v] += PartPoints * Vector2(0.8, 0.6);
-    }
-  }
-  for (int attempt = 1;; ++attempt)
-  {
-    BoxTriangulation moved = parted;
-    for (std::size_t v = SlabSide::Corners; v < moved.points.size(); ++v)
-    {
-      // No two vertices by the same amount, lest edges of both slices stay collinear.
-      const double angle = 2.399963 * static_cast<double>(v) * attempt;
-      moved.points[v] += Shift * attempt * Vector2(1.0 + 0.3 * std::cos(angle), 0.618 + 0.3 * std::sin(angle));
-    }
-    try
-    {
-      return Overlay(lower.box, moved);
-    }
-    catch (const std::runtime_error &)
-    {
-      if (attempt >= OverlayTries)
-      {
-        throw;
-      }
-    }
-  }
-}
 
 /** One step of regions between neighbours at most: from `from` down to `to` within `steps` steps, staying bone as long
  * as it can. */
@@ -119,10 +46,10 @@ AppendDescent(int from, int to, int steps, Column & column)
 }
 
 Column
-MakeColumn(int lower, int upper, bool together, int steps, bool parted)
+MakeColumn(int lower, int upper, bool together, int steps, bool separated)
 {
   Column column{ lower };
-  if (parted)
+  if (separated)
   {
     const int between = together ? std::min(lower, upper) : 0;
     AppendDescent(lower, between, steps, column);
@@ -170,12 +97,13 @@ public:
              const SlabSide &     lower,
              const SlabSide &     upper,
              int                  slice,
-             const VertexPool &   pool)
+             const VertexPool &   pool,
+             const Execution &    execution)
     : m_Stack(stack)
     , m_Sides{ &lower, &upper }
     , m_Slice(slice)
     , m_Pool(pool)
-    , m_Overlay(OverlaySides(lower, upper))
+    , m_Overlay(OverlaySides(lower, upper, execution))
   {}
 
   /** Area of bone that has the same region, of the same group, on both slices. */
@@ -208,7 +136,7 @@ public:
 
   /** The groups with members on both slices that overlap does not join into one. */
   std::vector<int>
-  PartedGroups(const std::vector<Group> & groups) const
+  SeparatedGroups(const std::vector<Group> & groups) const
   {
     std::set<std::array<int, 2>> links;
     for (const auto & t : m_Overlay.triangles)
@@ -218,20 +146,20 @@ public:
         links.insert({ { m_Sides[0]->piece[t.first], m_Sides[1]->piece[t.second] } });
       }
     }
-    std::vector<int> parted;
+    std::vector<int> separated;
     for (std::size_t g = 0; g < groups.size(); ++g)
     {
       if (!groups[g].lower.empty() && !groups[g].upper.empty() && !Joined(groups[g], links))
       {
-        parted.push_back(static_cast<int>(g));
+        separated.push_back(static_cast<int>(g));
       }
     }
-    return parted;
+    return separated;
   }
 
   /** `thin`: whether a cell is so flat that it may be inverted in another frame. */
   SlabFilling
-  Run(double low, double high, bool & thin)
+  Run(double low, double high, const Execution & execution, bool & thin)
   {
     MakeColumns();
     MakePoints(low, high);
@@ -245,7 +173,7 @@ public:
         throw std::runtime_error("its contours are too close to be told apart");
       }
     }
-    const MeshArrays mesh = CollapseSteinerPoints(m_Mesh, m_FirstSteiner, PlacesOf(low, high));
+    const MeshArrays mesh = CollapseSteinerPoints(m_Mesh, m_FirstSteiner, PlacesOf(low, high), execution);
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     {
       const Id4 &  c = mesh.tetrahedra[t];
@@ -267,14 +195,14 @@ private:
   MakeColumns()
   {
     int  jump = 1;
-    bool parted = false;
+    bool separated = false;
     for (const auto & t : m_Overlay.triangles)
     {
       const int a = m_Sides[0]->region[t.first], b = m_Sides[1]->region[t.second];
       jump = std::max(jump, std::abs(a - b));
-      parted = parted || (a > 0 && b > 0 && m_Sides[0]->group[t.first] != m_Sides[1]->group[t.second]);
+      separated = separated || (a > 0 && b > 0 && m_Sides[0]->group[t.first] != m_Sides[1]->group[t.second]);
     }
-    if (parted)
+    if (separated)
     {
       // Regions end before the bone between pieces does.
       for (const auto & t : m_Overlay.triangles)
@@ -288,7 +216,7 @@ private:
                                      m_Sides[1]->region[t.second],
                                      m_Sides[0]->group[t.first] == m_Sides[1]->group[t.second],
                                      jump,
-                                     parted));
+                                     separated));
     }
     m_Planes = static_cast<int>(m_Columns.front().size()) - 1;
   }
@@ -582,15 +510,15 @@ struct Alignment
 {
   SlabSide                    below, above;
   std::unique_ptr<SlabFiller> filler;
-  std::vector<int>            parted;
+  std::vector<int>            separated;
   std::ptrdiff_t              lost{ 0 }; ///< parts of layers that overlap where no slice is moved, and do not here
   double                      common{ 0.0 };
 
   bool
   IsBetterThan(const Alignment & other) const
   {
-    return std::make_tuple(parted.size(), lost, -common) <
-           std::make_tuple(other.parted.size(), other.lost, -other.common);
+    return std::make_tuple(separated.size(), lost, -common) <
+           std::make_tuple(other.separated.size(), other.lost, -other.common);
   }
 };
 
@@ -602,12 +530,14 @@ public:
           const std::vector<Section> & lower,
           const std::vector<Section> & upper,
           const std::vector<Group> &   groups,
-          const VertexPool &           pool)
+          const VertexPool &           pool,
+          const Execution &            execution)
     : m_Stack(stack)
     , m_Lower(lower)
     , m_Upper(upper)
     , m_Groups(groups)
     , m_Pool(pool)
+    , m_Execution(execution)
     , m_LowerGroup(lower.size(), -1)
     , m_UpperGroup(upper.size(), -1)
     , m_Slice((lower.empty() ? upper : lower).front().slice)
@@ -635,7 +565,8 @@ public:
       {
         return *m_Filling;
       }
-      // Vertices right above each other give flat cells. A small shift parts them and keeps what the next would lose.
+      // Vertices right above each other give flat cells. A small shift separates them and keeps what the next
+      // alignment would lose.
       const bool dear = a + 1 < m_Alignments.size() && m_Alignments[a + 1]->lost > m_Alignments[a]->lost;
       for (int i = 1; dear && i <= SmallShifts; ++i)
       {
@@ -662,7 +593,7 @@ private:
     int tried = 0;
     for (const Vector2 & shift : CandidateShifts(m_Pool, m_Lower, m_Upper, m_Groups))
     {
-      if (tried++ >= UsualShifts && !m_Alignments.empty() && m_Alignments.front()->parted.empty())
+      if (tried++ >= UsualShifts && !m_Alignments.empty() && m_Alignments.front()->separated.empty())
       {
         break;
       }
@@ -679,20 +610,22 @@ private:
   std::unique_ptr<Alignment>
   Align(const Vector2 & shift)
   {
+    m_Execution.ThrowIfAborted();
     auto alignment = std::make_unique<Alignment>();
     try
     {
       const SlabBounds bounds = BoundsOf(m_Pool, m_Lower, m_Upper, shift);
       alignment->below = MakeSide(m_Pool, m_Lower, m_LowerGroup, bounds, Vector2::Zero());
       alignment->above = MakeSide(m_Pool, m_Upper, m_UpperGroup, bounds, shift);
-      alignment->filler = std::make_unique<SlabFiller>(m_Stack, alignment->below, alignment->above, m_Slice, m_Pool);
+      alignment->filler =
+        std::make_unique<SlabFiller>(m_Stack, alignment->below, alignment->above, m_Slice, m_Pool, m_Execution);
     }
     catch (const std::runtime_error & error)
     {
       m_Reason = error.what();
       return nullptr;
     }
-    alignment->parted = alignment->filler->PartedGroups(m_Groups);
+    alignment->separated = alignment->filler->SeparatedGroups(m_Groups);
     alignment->common = alignment->filler->CommonArea() / (shift.isZero() ? 1.0 : ShiftGain);
     const std::set<LayerLink> links = alignment->filler->Links();
     m_Unmoved = shift.isZero() ? links : m_Unmoved;
@@ -708,8 +641,8 @@ private:
     try
     {
       bool        thin = false;
-      SlabFilling filling = alignment.filler->Run(low, high, thin);
-      filling.parted = alignment.parted;
+      SlabFilling filling = alignment.filler->Run(low, high, m_Execution, thin);
+      filling.separated = alignment.separated;
       if (!thin || !m_Filling)
       {
         m_Filling = std::move(filling);
@@ -728,6 +661,7 @@ private:
   const std::vector<Section> &            m_Upper;
   const std::vector<Group> &              m_Groups;
   const VertexPool &                      m_Pool;
+  const Execution &                       m_Execution;
   std::vector<int>                        m_LowerGroup;
   std::vector<int>                        m_UpperGroup;
   int                                     m_Slice;
@@ -745,9 +679,10 @@ FillSlab(const ContourStack &         stack,
          const std::vector<Group> &   groups,
          double                       lowerHeight,
          double                       upperHeight,
-         const VertexPool &           pool)
+         const VertexPool &           pool,
+         const Execution &            execution)
 {
-  return Aligner(stack, lower, upper, groups, pool).Run(lowerHeight, upperHeight);
+  return Aligner(stack, lower, upper, groups, pool, execution).Run(lowerHeight, upperHeight);
 }
 } // namespace tiling
 } // namespace bone

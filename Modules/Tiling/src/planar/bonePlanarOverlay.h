@@ -4,6 +4,7 @@
 #ifndef bonePlanarOverlay_h
 #define bonePlanarOverlay_h
 
+#include "boneExecution.h"
 #include "boneTypes.h"
 
 #include <array>
@@ -52,7 +53,7 @@ struct PlanarOverlay
  * the other (but for the corners), or a cell is too thin for its triangles to be positive in rounded coordinates: move
  * one of them by a little and try again. O(cells). */
 PlanarOverlay
-Overlay(const BoxTriangulation & first, const BoxTriangulation & second);
+Overlay(const BoxTriangulation & first, const BoxTriangulation & second, const Execution & execution);
 } // namespace tiling
 } // namespace bone
 

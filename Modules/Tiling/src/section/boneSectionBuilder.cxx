@@ -27,11 +27,12 @@ constexpr double LeastCarriedEdge = 0.4; // of the spacing
 class SectionMaker
 {
 public:
-  SectionMaker(const ContourStack & stack, int slice, double height, VertexPool & pool)
+  SectionMaker(const ContourStack & stack, int slice, double height, VertexPool & pool, const Execution & execution)
     : m_Stack(stack)
     , m_Slice(slice)
     , m_Height(height)
     , m_Pool(pool)
+    , m_Execution(execution)
   {}
 
   Walk
@@ -56,6 +57,7 @@ public:
   Candidate
   Evaluate(const PlanarTree & tree, const Section & section)
   {
+    m_Execution.ThrowIfAborted();
     Candidate candidate{ tree, {} };
     if (!tree.points.empty())
     {
@@ -92,6 +94,7 @@ private:
   int                  m_Slice;
   double               m_Height;
   VertexPool &         m_Pool;
+  const Execution &    m_Execution;
 };
 
 /** The polylines of a given medial axis as one tree; without points where they are not one. */
@@ -286,13 +289,14 @@ BuildSection(const ContourStack & stack,
              int                  slice,
              double               height,
              VertexPool &         pool,
-             TilingReport &       report)
+             TilingReport &       report,
+             const Execution &    execution)
 {
   report.edgesRefined += RefineThinLayers(piece);
   const std::size_t mark = pool.plane.size();
   if (piece.IsChain())
   {
-    SectionMaker maker(stack, slice, height, pool);
+    SectionMaker maker(stack, slice, height, pool, execution);
     Section      section;
     section.slice = slice;
     const bool hole = piece.loops.back().region == Region::Outside;

@@ -13,6 +13,43 @@ namespace bone
 {
 namespace tiling
 {
+namespace
+{
+constexpr int    OverlayTries = 6;
+constexpr double NearPoints = 0.1;   // mm
+constexpr double SpreadPoints = 0.4; // mm
+constexpr double Shift = 1e-5;       // mm, separates vertices of the two slices that lie over each other
+
+/** Whether a vertex lies inside one region and may be moved a little without turning a triangle over. */
+bool
+IsInner(const SlabSide & side, int vertex)
+{
+  int region = 0;
+  for (std::size_t t = 0; t < side.box.triangles.size(); ++t)
+  {
+    const auto & ids = side.box.triangles[t];
+    const auto   at = std::find(ids.begin(), ids.end(), vertex);
+    if (at != ids.end())
+    {
+      if (side.region[t] == 0 || (region != 0 && side.region[t] != region))
+      {
+        return false;
+      }
+      region = side.region[t];
+      const auto      i = static_cast<std::size_t>(at - ids.begin());
+      const Vector2 & a = side.box.points[ids[(i + 1) % 3]];
+      const Vector2 & b = side.box.points[ids[(i + 2) % 3]];
+      const Vector2   x = side.box.points[vertex] - a, d = b - a;
+      if ((d.x() * x.y() - d.y() * x.x()) < 4 * SpreadPoints * d.norm())
+      {
+        return false;
+      }
+    }
+  }
+  return region != 0;
+}
+} // namespace
+
 SlabBounds
 BoundsOf(const VertexPool &           pool,
          const std::vector<Section> & lower,
@@ -114,6 +151,46 @@ MakeSide(const VertexPool &           pool,
     }
   }
   return side;
+}
+
+PlanarOverlay
+OverlaySides(const SlabSide & lower, const SlabSide & upper, const Execution & execution)
+{
+  // Medial axes of both slices often meet in nearly the same point, whose fans of triangles would cross each other in a
+  // knot of that size.
+  BoxTriangulation spread = upper.box;
+  for (std::size_t v = SlabSide::Corners; v < spread.points.size(); ++v)
+  {
+    const bool near =
+      std::any_of(lower.box.points.begin() + SlabSide::Corners, lower.box.points.end(), [&](const Vector2 & q) {
+        return (q - upper.box.points[v]).squaredNorm() < NearPoints * NearPoints;
+      });
+    if (near && IsInner(upper, static_cast<int>(v)))
+    {
+      spread.points[v] += SpreadPoints * Vector2(0.8, 0.6);
+    }
+  }
+  for (int attempt = 1;; ++attempt)
+  {
+    BoxTriangulation moved = spread;
+    for (std::size_t v = SlabSide::Corners; v < moved.points.size(); ++v)
+    {
+      // No two vertices by the same amount, lest edges of both slices stay collinear.
+      const double angle = 2.399963 * static_cast<double>(v) * attempt;
+      moved.points[v] += Shift * attempt * Vector2(1.0 + 0.3 * std::cos(angle), 0.618 + 0.3 * std::sin(angle));
+    }
+    try
+    {
+      return Overlay(lower.box, moved, execution);
+    }
+    catch (const std::runtime_error &)
+    {
+      if (attempt >= OverlayTries)
+      {
+        throw;
+      }
+    }
+  }
 }
 } // namespace tiling
 } // namespace bone
