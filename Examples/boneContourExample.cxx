@@ -23,15 +23,15 @@ main(int argc, char ** argv)
   }
   try
   {
-    auto snake = bone::SnakeContourFilter<bone::CTImage, bone::ContourStack>::New();
+    auto snake = bone::SnakeContourFilter<bone::CTImage>::New();
     snake->SetInput(bone::ReadCT(argv[1]));
     snake->SetLabelImage(bone::ReadLabels(argv[2]));
     snake->SetSliceStep(3.0);
 
-    auto resample = bone::ContourResampleFilter<bone::ContourStack>::New();
+    auto resample = bone::ContourResampleFilter::New();
     resample->SetInput(snake->GetOutput());
 
-    auto axis = bone::MedialAxisFilter<bone::ContourStack>::New();
+    auto axis = bone::MedialAxisFilter::New();
     axis->SetInput(resample->GetOutput());
     axis->Update();
 

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneDensityCalibrationFilter.h"
 #include "boneImageIO.h"
@@ -23,8 +24,7 @@ using Json = nlohmann::json;
 struct Options
 {
   std::string              mesh;
-  std::vector<double>      line;
-  std::string              to;
+  DensityCalibrationParameters parameters;
   std::string              references;
   std::string              ct;
   std::string              labels;
@@ -149,23 +149,24 @@ void
 Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
-  if (options.line.empty() && options.references.empty() && options.laws.empty())
+  const auto & [line, to] = options.parameters;
+  if (line.empty() && options.references.empty() && options.laws.empty())
   {
     throw UsageError("--line, --references or --law is required");
   }
-  if (options.to.empty() && !(options.line.empty() && options.references.empty()))
+  if (to <= DensityQuantity::HounsfieldUnit && !(line.empty() && options.references.empty()))
   {
-    throw UsageError("--to is required: it says what the line leads to");
+    throw UsageError("--to is required, k2hpo4, ha, ash or apparent: it says what the line leads to");
   }
   auto filter = DensityCalibrationFilter<CTImage>::New();
   filter->SetInput(ReadDensityMesh(options.mesh));
-  if (!options.line.empty())
+  if (!line.empty())
   {
-    filter->SetLine(options.line[0], options.line[1], ParseChoice<DensityQuantity>(options.to));
+    filter->SetLine(line[0], line[1], to);
   }
   else if (!options.references.empty())
   {
-    UseReferences(options, ParseChoice<DensityQuantity>(options.to), *filter);
+    UseReferences(options, to, *filter);
   }
   filter->SetLaws(options.laws);
   filter->Update();
@@ -180,17 +181,13 @@ AddCalibrateCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<Options>();
   auto * command = app.add_subcommand("calibrate", "Turn Hounsfield units into mineral, ash or apparent density");
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
-  auto * line =
-    command->add_option("--line", options->line, "Intercept and slope: density = intercept + slope * HU")->expected(2);
+  AddParameterOptions(command, options->parameters);
+  auto * line = command->get_option("--line")->expected(2);
   command
     ->add_option("--references",
                  options->references,
                  "Phantom rods or tissues of known density (.json), through which a line is fitted")
     ->excludes(line);
-  command
-    ->add_option(
-      "--to", options->to, "What the line or the references give: k2hpo4, ha (mg/cm3), ash, apparent (g/cm3)")
-    ->check(CLI::IsMember({ "k2hpo4", "ha", "ash", "apparent" }).description(""));
   command->add_option("--ct", options->ct, "CT that rods and tissues are measured in");
   command->add_option("--labels", options->labels, "Label map on the CT's grid for references named by a label");
   command

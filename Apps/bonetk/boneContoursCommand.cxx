@@ -65,7 +65,7 @@ LayerDistance(const Options & options, const CTImage * ct)
 
 /** Sets the spacings for a number of tetrahedra. */
 void
-FindSamples(double tetrahedra, ContourResampleFilter<> & resample, MedialAxisFilter<> & axes, Session & session)
+FindSamples(double tetrahedra, ContourResampleFilter & resample, MedialAxisFilter & axes, Session & session)
 {
   constexpr double off = 0.1;
   const auto       asked = static_cast<IdType>(std::llround(tetrahedra));
@@ -97,7 +97,7 @@ Run(const Options & options, Session & session)
   const BoneInput        bone = ReadBone(options.bone, options.axis);
   const CTImage::Pointer ct = ReadCT(options.ct);
   const double           distance = LayerDistance(options, ct);
-  auto                   snake = SnakeContourFilter<CTImage, ContourStack>::New();
+  auto                   snake = SnakeContourFilter<CTImage>::New();
   snake->SetInput(ct);
   snake->SetLabelImage(bone.labels);
   snake->SetInitialContours(bone.contours);
@@ -109,8 +109,8 @@ Run(const Options & options, Session & session)
   snake->SetMinimumLayerDistance(distance);
   snake->SetRefineLabelOutline(options.refine);
   snake->SetKeepSmallPieces(options.keepSmall);
-  auto resample = ContourResampleFilter<ContourStack>::New();
-  auto slices = ContourSliceFilter<ContourStack>::New();
+  auto resample = ContourResampleFilter::New();
+  auto slices = ContourSliceFilter::New();
   slices->SetInput(snake->GetOutput());
   slices->SetMeanSpacing(options.meanStep);
   resample->SetInput(slices->GetOutput());
@@ -120,7 +120,7 @@ Run(const Options & options, Session & session)
   resample->SetMinimumLayerDistance(distance);
   resample->SetThinLayerRatio(options.layerRatio);
   resample->SetTargetNumberOfSamples(static_cast<std::size_t>(std::llround(options.samples)));
-  auto axes = MedialAxisFilter<ContourStack>::New();
+  auto axes = MedialAxisFilter::New();
   axes->SetInput(resample->GetOutput());
   session.Watch(snake, "contours");
   session.Watch(slices, "choosing slices");

@@ -22,7 +22,7 @@ RegionName(int region)
 {
   static const std::map<int, const char *> names = { { Region::Outside, "outside" },
                                                      { Region::Cortical, "cortical" },
-                                                     { Region::Spongy, "spongy" },
+                                                     { Region::Trabecular, "trabecular" },
                                                      { Region::Medullary, "medullary" } };
   const auto                               found = names.find(region);
   return found == names.end() ? "further layer" : found->second;

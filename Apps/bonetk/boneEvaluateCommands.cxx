@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneAtomicFile.h"
 #include "boneDensityEvaluation.h"
@@ -23,7 +24,7 @@ struct VoxelsOptions
   std::string mesh;
   std::string like;
   double      spacing{ 1.0 };
-  double      outside{ -1024.0 };
+  DensityImageParameters image;
   std::string output;
 };
 
@@ -33,7 +34,7 @@ RunVoxels(const VoxelsOptions & options, Session & session)
   const auto mesh = ReadDensityMesh(options.mesh);
   auto       filter = DensityImageFilter<DensityMesh<double>, CTImage>::New();
   filter->SetInput(mesh);
-  filter->SetOutsideValue(static_cast<float>(options.outside));
+  filter->SetParameters(options.image);
   if (!options.like.empty())
   {
     filter->SetReferenceImage(ReadCT(options.like));
@@ -126,7 +127,7 @@ AddVoxelsCommand(CLI::App & app, Action & action)
   command->add_option("--spacing", options->spacing, "Voxel size in mm of a grid around the model; default 1")
     ->check(Positive())
     ->excludes(like);
-  command->add_option("--outside", options->outside, "Value outside the model; default -1024");
+  AddParameterOptions(command, options->image);
   command->add_option("-o,--output", options->output, "Image to write (.nii.gz, .mha, .nrrd, ...)")->required();
   command->callback([options, &action] { action = [options](Session & session) { RunVoxels(*options, session); }; });
 }

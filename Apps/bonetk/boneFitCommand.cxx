@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneAtomicFile.h"
 #include "boneDensityCalibration.h"
@@ -25,17 +26,8 @@ struct Options
 {
   std::string ct;
   std::string mesh;
-  int         degree{ 3 };
-  bool        continuous{ false };
-  std::string interpolator{ "linear" };
+  DensityFitParameters parameters;
   std::string weights;
-  double      voxelWeight{ 4.0 };
-  double      tikhonov{ 1e-4 };
-  double      overshoot{ 8.0 };
-  double      surfaceMargin{ 0.0 };
-  double      interfaceMargin{ 0.0 };
-  double      maximumError{ 0.0 };
-  std::string quantity{ "hu" };
   std::string report;
   std::string output;
 };
@@ -95,15 +87,7 @@ DescribeFit(Fit & fit, const CTImage & ct)
   blind->SetImage(&ct);
   blind->SetMesh(fit.GetMesh());
   blind->SetWeights(fit.GetWeights());
-  blind->SetDegree(fit.GetDegree());
-  blind->SetContinuous(fit.GetContinuous());
-  blind->SetInterpolator(fit.GetInterpolator());
-  blind->SetVoxelWeight(fit.GetVoxelWeight());
-  blind->SetTikhonov(fit.GetTikhonov());
-  blind->SetOvershootLimit(fit.GetOvershootLimit());
-  blind->SetSurfaceMargin(fit.GetSurfaceMargin());
-  blind->SetInterfaceMargin(fit.GetInterfaceMargin());
-  blind->SetMaximumError(fit.GetMaximumError());
+  blind->SetParameters(fit.GetParameters());
   blind->HoldOutOn();
   blind->Update();
   report["heldOutError"] = ErrorAtVoxels(blind->GetOutput()->GetArrays(), ct, true);
@@ -122,17 +106,7 @@ Run(const Options & options, Session & session)
   {
     fit->SetWeights(ReadCT(options.weights));
   }
-  fit->SetDegree(options.degree);
-  fit->SetContinuous(options.continuous);
-  fit->SetInterpolator(options.interpolator == "linear" ? DensityInterpolator::Linear
-                                                        : DensityInterpolator::CubicBSpline);
-  fit->SetVoxelWeight(options.voxelWeight);
-  fit->SetTikhonov(options.tikhonov);
-  fit->SetOvershootLimit(options.overshoot);
-  fit->SetSurfaceMargin(options.surfaceMargin);
-  fit->SetInterfaceMargin(options.interfaceMargin);
-  fit->SetMaximumError(options.maximumError);
-  fit->SetQuantity(ParseChoice<DensityQuantity>(options.quantity));
+  fit->SetParameters(options.parameters);
   session.Watch(fit, "density fit");
   fit->Update();
   if (fit->GetReport().unsupported > 0)
@@ -157,45 +131,9 @@ AddFitCommand(CLI::App & app, Action & action)
   auto * command = app.add_subcommand("fit", "Fit a Bernstein polynomial to the CT in every tetrahedron");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
   command->add_option("mesh", options->mesh, "Mesh (.vtu); a density it holds is replaced")->required();
-  command->add_option("--degree", options->degree, "Degree of the polynomials, 0 to 8")
-    ->required()
-    ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
-  auto * continuous =
-    command->add_flag("--continuous", options->continuous, "One continuous density within each region");
-  command
-    ->add_option("--max-error",
-                 options->maximumError,
-                 "Lowest degree, up to --degree, whose root mean square error in the tetrahedron is at most this")
-    ->check(Positive())
-    ->excludes(continuous);
-  command
-    ->add_option("--interpolator",
-                 options->interpolator,
-                 "Between voxels: linear (default; its error by curvature is taken off) or bspline (cubic)")
-    ->check(CLI::IsMember({ "linear", "bspline" }).description(""));
+  AddParameterOptions(command, options->parameters);
+  command->get_option("--max-error")->excludes(command->get_option("--continuous"));
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
-  command
-    ->add_option(
-      "--voxel-weight", options->voxelWeight, "Weight of voxels' own values against the interpolated image; default 4")
-    ->check(NotNegative());
-  command->add_option("--tikhonov", options->tikhonov, "Weight of the pull to the degree below; default 1e-4")
-    ->check(NotNegative());
-  command
-    ->add_option("--overshoot-limit",
-                 options->overshoot,
-                 "How far control values may lie beyond a tetrahedron's data, in ranges of these; default 8")
-    ->check(NotNegative());
-  command
-    ->add_option("--surface-margin",
-                 options->surfaceMargin,
-                 "What lies nearer than this to the surface (mm) takes the value this deep; default 0")
-    ->check(NotNegative());
-  command
-    ->add_option("--interface-margin", options->interfaceMargin, "The same for the faces between regions; default 0")
-    ->check(NotNegative());
-  command
-    ->add_option("--quantity", options->quantity, "What the CT's values are: hu (default), k2hpo4, ha, ash, apparent")
-    ->check(CLI::IsMember({ "hu", "k2hpo4", "ha", "ash", "apparent" }).description(""));
   command->add_option("--report", options->report, "Figures of the fit, with the error at held-out voxels (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });

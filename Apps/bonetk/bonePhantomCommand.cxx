@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneMakePhantom.h"
 #include "boneMeshIO.h"
@@ -20,7 +21,7 @@ struct Options
   std::uint64_t subject{ 0 };
   double        spacing{ 1.0 };
   double        sliceSpacing{ 0.0 };
-  double        noise{ 0.0 };
+  PhantomImageParameters image;
   std::string   output;
   std::string   labels;
 };
@@ -47,7 +48,7 @@ Run(const Options & options, Session & session)
   spacing.Fill(options.spacing);
   spacing[2] = options.sliceSpacing > 0.0 ? options.sliceSpacing : options.spacing;
   source->SetSpacing(spacing);
-  source->SetNoise(options.noise);
+  source->SetParameters(options.image);
   source->SetNoiseSeed(options.subject + 1);
   session.Watch(source, "phantom");
   source->Update();
@@ -73,10 +74,9 @@ AddPhantomCommand(CLI::App & app, Action & action)
   command->add_option("--spacing", options->spacing, "Voxel size in mm; default 1")->check(Positive());
   command->add_option("--slice-spacing", options->sliceSpacing, "Distance of slices in mm; default: --spacing")
     ->check(Positive());
-  command->add_option("--noise", options->noise, "Standard deviation of the noise in HU; default 0")
-    ->check(NotNegative());
+  AddParameterOptions(command, options->image);
   command->add_option("-o,--output", options->output, "CT to write (.nii.gz, .mha, .nrrd, ...)")->required();
-  command->add_option("--labels", options->labels, "Label map to write: 1 cortical, 2 spongy, 3 medullary cavity");
+  command->add_option("--labels", options->labels, "Label map to write: 1 cortical, 2 trabecular, 3 medullary cavity");
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
 }
 } // namespace bone

@@ -2,7 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
-#include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
@@ -14,48 +14,36 @@ namespace bone
 {
 namespace
 {
-constexpr double Radian = 0.017453292519943295;
-
 struct Options
 {
   std::string         mesh;
-  std::vector<IdType> tetrahedra;
-  std::vector<double> errors;
-  std::vector<double> distances;
-  double              volume{ 3.0 };
-  double              angle{ 3.0 };
-  int                 degree{ -1 };
+  TetraCollapseParameters parameters;
   std::string         prefix;
 };
 
 void
 Run(const Options & options, Session & session)
 {
-  if (options.tetrahedra.empty() && options.errors.empty() && options.distances.empty())
+  const TetraCollapseParameters & parameters = options.parameters;
+  if (parameters.levels.empty() && parameters.maximumDensityErrors.empty() && parameters.maximumSurfaceDistances.empty())
   {
     throw UsageError("--tetrahedra, --max-density-error or --max-surface-distance is required");
   }
-  if (!std::is_sorted(options.tetrahedra.rbegin(), options.tetrahedra.rend()))
+  if (!std::is_sorted(parameters.levels.rbegin(), parameters.levels.rend()))
   {
     throw UsageError("--tetrahedra must not ascend: each level is coarser than the one before");
   }
-  if (!std::is_sorted(options.errors.begin(), options.errors.end()))
+  if (!std::is_sorted(parameters.maximumDensityErrors.begin(), parameters.maximumDensityErrors.end()))
   {
     throw UsageError("--max-density-error must not descend: each level is coarser than the one before");
   }
-  if (!std::is_sorted(options.distances.begin(), options.distances.end()))
+  if (!std::is_sorted(parameters.maximumSurfaceDistances.begin(), parameters.maximumSurfaceDistances.end()))
   {
     throw UsageError("--max-surface-distance must not descend: each level is coarser than the one before");
   }
   auto collapse = TetraCollapseFilter<DensityMesh<double>>::New();
   collapse->SetInput(ReadDensityMesh(options.mesh));
-  collapse->SetLevels(options.tetrahedra);
-  collapse->SetMaximumDensityErrors(options.errors);
-  collapse->SetMaximumSurfaceDistances(options.distances);
-  collapse->SetMaximumVolumeChange(options.volume / 100.0);
-  collapse->SetMinimumDihedralAngle(options.angle * Radian);
-  collapse->SetMinimumCorticalDihedralAngle(0.5 * options.angle * Radian);
-  collapse->SetMaximumDegree(options.degree);
+  collapse->SetParameters(parameters);
   session.Watch(collapse, "simplification");
   collapse->Update();
   WriteHierarchy(collapse->GetOutput(), options.prefix);
@@ -68,35 +56,15 @@ AddSimplifyCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<Options>();
   auto * command = app.add_subcommand("simplify", "Simplify a density mesh into a hierarchy of coarser levels");
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
-  command->add_option("--tetrahedra", options->tetrahedra, "Tetrahedra of each coarser level, in order")
-    ->check(Between(1, 1e9));
-  command
-    ->add_option("--max-density-error",
-                 options->errors,
-                 "Bound on the root mean square density error of each coarser level, in density units")
-    ->check(NotNegative());
-  command
-    ->add_option("--max-surface-distance",
-                 options->distances,
-                 "Bound on the distance of boundary and interfaces of each coarser level to the first, and back, mm")
-    ->check(NotNegative());
-  command
-    ->add_option("--max-volume-change",
-                 options->volume,
-                 "Bound on the change of each region's volume, %; default 3")
-    ->check(NotNegative());
-  command
-    ->add_option("--min-angle",
-                 options->angle,
-                 "No dihedral angle falls below this and what was there, degrees; half of it in the cortical layer; default 3")
-    ->check(Between(0, 70));
-  command
-    ->add_option("--max-degree",
-                 options->degree,
-                 "Degree to which polynomials may be raised to keep to --max-density-error; default: not raised")
-    ->check(Between(0, 8));
+  AddParameterOptions(command, options->parameters);
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, command, &action] {
+    if (command->count("--min-angle") > 0 && command->count("--min-cortical-angle") == 0)
+    {
+      options->parameters.minimumCorticalDihedralAngle = 0.5 * options->parameters.minimumDihedralAngle;
+    }
+    action = [options](Session & session) { Run(*options, session); };
+  });
 }
 } // namespace bone

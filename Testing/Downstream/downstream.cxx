@@ -33,14 +33,14 @@ main()
     phantom->SetSpacing(spacing);
     phantom->Update();
 
-    auto snake = bone::SnakeContourFilter<bone::CTImage, bone::ContourStack>::New();
+    auto snake = bone::SnakeContourFilter<bone::CTImage>::New();
     snake->SetInput(phantom->GetOutput());
     snake->SetLabelImage(phantom->GetLabelOutput());
     snake->SetSliceStep(8.0);
-    auto resample = bone::ContourResampleFilter<bone::ContourStack>::New();
+    auto resample = bone::ContourResampleFilter::New();
     resample->SetInput(snake->GetOutput());
     resample->SetMaximumSpacing(8.0);
-    auto axis = bone::MedialAxisFilter<bone::ContourStack>::New();
+    auto axis = bone::MedialAxisFilter::New();
     axis->SetInput(resample->GetOutput());
     auto tiling = bone::ContourTilingMeshSource<Mesh>::New();
     tiling->SetInput(axis->GetOutput());

@@ -280,7 +280,7 @@ PrintFactors(double within, int degree, const MeshTrainingSet<> * set, const Eig
   const auto &          content = estimator->GetOutput()->GetContent();
   const Eigen::MatrixXd shape = content.shapeScores.leftCols(3), density = content.densityScores.leftCols(2);
   const char *          names[5] = {
-             "size", "bend of the wing", "inclination of the cup", "cortical density", "spongy density"
+             "size", "bend of the wing", "inclination of the cup", "cortical density", "trabecular density"
   };
   const std::string kind = within == 1 ? "integral" : within > 0 ? "volume" : "coefficients";
   const std::string product = kind + ", degree " + std::to_string(degree);

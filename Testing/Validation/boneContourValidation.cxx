@@ -12,6 +12,7 @@
 #include "boneLabelContours.h"
 #include "boneMakePhantom.h"
 #include "bonePhantomImageSource.h"
+#include "boneSnake.h"
 #include "boneSnakeContourFilter.h"
 
 #include <algorithm>

@@ -114,7 +114,7 @@ against the trilinearly interpolated CT, which is blurred itself; at held-out vo
                      f"{percent(entry, 'region2'):.2f}", f"{100 * entry['cut'] / entry['all']['range']:.2f}",
                      f"{entry['heldOut']['percent']:.2f}", f"{spline[n]['all']['percent']:.2f}",
                      f"{spline[n]['heldOut']['percent']:.2f}"))
-    text += table(("degree", "all voxels", "check_mesh", "bound, met", "unlayered mesh", "cortical", "spongy", "plane",
+    text += table(("degree", "all voxels", "check_mesh", "bound, met", "unlayered mesh", "cortical", "trabecular", "plane",
                    "held out", "B-spline", "B-spline, held out"), rows)
     missed = [n for n, row in enumerate(checked) if row[0] > BOUNDS[n] or row[1] > 1.5]
     if checked:
@@ -216,7 +216,7 @@ error against the known noise-free CT in HU; below the noise means below {NOISE:
         rows.append((n, f"{e['all']['mean']:.1f}", "yes" if e["all"]["mean"] < NOISE else "no", f"{e['region1']['mean']:.1f}",
                      f"{e['region2']['mean']:.1f}", f"{e['region3']['mean']:.1f}",
                      *(f"{v[n]['all']['mean']:.1f}" for v in variants.values())))
-    text += table(("degree", "all", "below the noise", "cortical", "spongy", "medullary", *variants), rows)
+    text += table(("degree", "all", "below the noise", "cortical", "trabecular", "medullary", *variants), rows)
     text += f"\nLeast error: degree {best(default, lambda e: e['all']['mean'])}.\n"
     text += other_phantoms(bonetk, work)
     data = work / "phantom.txt"

@@ -195,7 +195,7 @@ def report(rows, methods):
            "stage with its defaults (distance bound: half a pixel, at most 0.3 mm; fitted to the contours of all slices and the label).\n", "## Angles\n",
            "Smallest dihedral angle, degrees: cortical: least; % of cells below 2; mean, and what thickness over edge allows on",
            "average (mean of the three cells of a prism of that height). Other regions: least; % of cells below 8; mean.\n",
-           "| bone | | cells | cortical | spongy | medullary |", "|---|---|---|---|---|---|"]
+           "| bone | | cells | cortical | trabecular | medullary |", "|---|---|---|---|---|---|"]
     for name, row in rows:
         before, after = angles(row)
         out += [f"| {name} | tiled | {before} |", f"| | made | {after} |"]

@@ -4,24 +4,33 @@
 #ifndef boneContourExtraction_h
 #define boneContourExtraction_h
 
-#include "boneBoneLayers.h"
-#include "boneSnake.h"
+#include "boneContourStack.h"
+#include "boneExecution.h"
+#include "bonePlaneField.h"
+#include "boneSnakeContourParameters.h"
+
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace bone
 {
-/** Parameters of the extraction; lengths in mm, densities in the CT's units (HU). */
-struct ExtractionParameters
+/** The CT in the plane at a height (mm along the normal), at least over the box from `low` to `high` (plane
+ * coordinates, mm) as far as the image goes. Safe to call from many threads. */
+using PlaneSource = std::function<PlaneField(double height, const Vector2 & low, const Vector2 & high)>;
+
+/** Heights of an image's slices along the stack's normal, mm. */
+struct SliceRange
 {
-  SnakeParameters snake;
-  LayerParameters layers;
-  double          edgeSmoothing{ 0.0 };     ///< Gaussian on the CT before edges are sought; 0: 0.5 pixel
-  double          minimumSlope{ 40.0 };     ///< of an edge, HU/mm
-  double          minimumArea{ 4.0 };       ///< of a contour
-  double          boneThreshold{ 150.0 };   ///< what never reaches it is no bone
-  double          refineDistance{ 0.0 };    ///< bound on the refinement of a label's outline
-  double          followStep{ 1.0 };        ///< slices further apart are followed on planes between them too
-  double          minimumVolume{ 60.0 };    ///< of a body apart from the rest
-  bool            keepSmallPieces{ false }; ///< also what exists on one slice only, and smaller bodies
+  double first{ 0.0 };
+  double step{ 1.0 };
+  int    count{ 0 };
+
+  double
+  Top() const
+  {
+    return first + (count - 1) * step;
+  }
 };
 
 /** What happened on a slice. */
@@ -42,68 +51,55 @@ struct ExtractionReport
   std::vector<std::string> warnings;
 };
 
-/** Heights of an image's slices along the stack's normal, mm. */
-struct SliceRange
+/** \brief A box of voxels in space: voxel (i, j, k) is centred at origin + direction * (i, j, k) .* spacing (mm). */
+struct VoxelBox
 {
-  double first{ 0.0 };
-  double step{ 1.0 };
-  int    count{ 0 };
+  std::array<int, 3> size{ { 0, 0, 0 } };
+  Vector3            origin{ Vector3::Zero() };
+  Vector3            spacing{ Vector3::Ones() };
+  Eigen::Matrix3d    direction{ Eigen::Matrix3d::Identity() };
 
-  double
-  Top() const
+  std::size_t
+  Count() const
   {
-    return first + (count - 1) * step;
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
   }
 };
 
-/** Empty sections for a bone between the heights `low` and `high`: on the image's slices, or, for a `step` above 0, at
- * the largest even distance not above it with which the first and the last fall on `low` and `high`. Never off the
- * image.
- */
-std::vector<BoneSection>
-PlaceSections(const SliceRange & slices, double low, double high, double step);
+/** A label's bounding box with a margin, and which of its voxels have the label. */
+struct LabelVoxels
+{
+  VoxelBox                   box;
+  std::vector<unsigned char> inside;       ///< box.Count() flags, the first axis fastest
+  double                     low{ 0.0 };   ///< height of the label's lowest voxel along the frame's normal, mm
+  double                     high{ 0.0 };  ///< and of its highest
+};
 
-/** Empty sections through the whole image, on its slices, or `step` above 0 apart with one at the height `anchor`. */
-std::vector<BoneSection>
-PlaceSectionsThrough(const SliceRange & slices, double anchor, double step);
+/** An image's slices in the frame of the stack. */
+struct SliceFrame
+{
+  Vector3            u{ Vector3::UnitX() };
+  Vector3            v{ Vector3::UnitY() };
+  Vector3            normal{ Vector3::UnitZ() };
+  Vector2            origin{ Vector2::Zero() }; ///< of the buffer's first voxel, plane coordinates
+  Vector2            pixel{ Vector2::Ones() };  ///< mm
+  SliceRange         slices;
+  std::array<int, 2> size{}; ///< pixels along u and v
+};
 
-/** The highest value of the CT in the pieces' bounding boxes; the search ends with a value that reaches `enough`. */
-double
-BrightestWithin(const std::vector<BoneSection> & sections, const PlaneSource & planes, double enough);
-
-/** Moves the periosteal contours of sections, as they come from a label, to the CT's edges within
- * `parameters.refineDistance`. A slice where that makes contours cross keeps those it had, and its report says so. */
-void
-RefineSections(std::vector<BoneSection> &   sections,
-               const PlaneSource &          planes,
-               const Vector2 &              pixel,
-               const ExtractionParameters & parameters,
-               const ParallelFor &          parallel,
-               ExtractionReport &           report);
-
-/** \brief Follows contours from slice to slice (paper 2.1).
+/** \brief The work of SnakeContourFilter on plain data.
  *
- * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn. \ref BoneFollower
- * finds which part of the other slices is that bone; snakes then draw its outlines to the edges: gradient vector flow
- * first where a person has drawn, within two pixels elsewhere. Contours that would cross are joined and parted by their
- * union's outline. The report tells where pieces join, touch other bones or end, and of sudden changes and gaps.
- */
+ * `label` or `initial` may be null, not both. Fills the contours' frame, slices and open ends. Throws
+ * std::runtime_error as the filter documents. */
 void
-PropagateSections(std::vector<BoneSection> &   sections,
-                  const PlaneSource &          planes,
-                  const Vector2 &              pixel,
-                  const ExtractionParameters & parameters,
-                  const ParallelFor &          parallel,
-                  ExtractionReport &           report);
-
-/** Drops what is short-lived, finds the inner layers and removes empty slices at both ends, from the report too. */
-void
-FinishSections(std::vector<BoneSection> &   sections,
-               const PlaneSource &          planes,
-               const Vector2 &              pixel,
-               const ExtractionParameters & parameters,
-               const ParallelFor &          parallel,
-               ExtractionReport &           report);
+ExtractContours(const SliceFrame &             frame,
+                const PlaneSource &            planes,
+                const LabelVoxels *            label,
+                const ContourStack *           initial,
+                const SnakeContourParameters & parameters,
+                const Execution &              execution,
+                ContourStack &                 contours,
+                ExtractionReport &             report);
 } // namespace bone
 
 #endif

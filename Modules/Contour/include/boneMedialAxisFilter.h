@@ -5,7 +5,7 @@
 #define boneMedialAxisFilter_h
 
 #include "boneContourStackFilter.h"
-#include "boneMedialAxis.h"
+#include "boneContourStackParameters.h"
 
 namespace bone
 {
@@ -15,49 +15,32 @@ namespace bone
  * The output has the input's closed contours and, for each of them that is no hole and holds nothing but holes, the
  * axis of the bone in it: polylines with `axis` set, the contour's layer + 1, its region, and each point's `clearance`.
  * Branches share their end points and form a tree, with a cycle around each hole; a round contour has a single point.
- * Axes of the input are replaced. How: \ref ComputeMedialAxis. */
-template <typename TContourStack = ContourStack>
-class MedialAxisFilter : public ContourStackFilter<TContourStack>
+ * Axes of the input are replaced. The axis is that of the contours' Voronoi diagram, cut back from its ends by the chord
+ * residual of R. Ogniewicz, O. Kuebler, doi:10.1016/0031-3203(94)00105-U. Parameters: \ref MedialAxisParameters. */
+class MedialAxisFilter : public ContourStackFilter
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(MedialAxisFilter);
   using Self = MedialAxisFilter;
-  using Superclass = ContourStackFilter<TContourStack>;
+  using Superclass = ContourStackFilter;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
   itkTypeMacro(MedialAxisFilter, ContourStackFilter);
 
-  /** Distance between samples of the axis, mm; 0 (default): the mean distance of the contour's points. */
-  itkSetMacro(Spacing, double);
-  itkGetConstMacro(Spacing, double);
-  /** See \ref MedialAxisParameters. Default 0.8. */
-  itkSetMacro(Significance, double);
-  itkGetConstMacro(Significance, double);
-  /** See \ref MedialAxisParameters. Default 1. */
-  itkSetMacro(Roundness, double);
-  itkGetConstMacro(Roundness, double);
+  BONE_FILTER_PARAMETERS(MedialAxisParameters, BONE_MEDIAL_AXIS_PARAMETERS)
 
 protected:
   MedialAxisFilter() = default;
   ~MedialAxisFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   ContourSlice
-  MakeSlice(const TContourStack & input, std::size_t k) override;
+  MakeSlice(const ContourStack & input, std::size_t k) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
-
-private:
-  double m_Spacing{ 0.0 };
-  double m_Significance{ 0.8 };
-  double m_Roundness{ 1.0 };
 };
 } // namespace bone
-
-#ifndef ITK_MANUAL_INSTANTIATION
-#include "boneMedialAxisFilter.hxx"
-#endif
 
 #endif

@@ -5,10 +5,9 @@
 #define boneSnakeContourFilter_h
 
 #include "boneContourExtraction.h"
-#include "boneContourStack.h"
+#include "boneContourFilter.h"
 
 #include <itkImage.h>
-#include <itkProcessObject.h>
 
 namespace bone
 {
@@ -21,8 +20,8 @@ namespace bone
  * - "LabelImage", optional, on its own grid: the periosteal contours start from the outline of `Label`, smooth and with
  *   the label's area, and are kept so or, with RefineLabelOutline, moved to the CT's edges within RefineDistance;
  * - "InitialContours", optional: closed contours of layer 0 on some slices (parallel to the image's). Without a label
- *   the bone is followed from them to all other slices (\ref BoneFollower): its contours may split, join, appear and
- *   end, and bones in contact are parted along the dark line between them. With a label they replace its outline on
+ *   the bone is followed from them to all other slices: its contours may split, join, appear and
+ *   end, and bones in contact are separated along the dark line between them. With a label they replace its outline on
  *   their slices; with FollowLabel too the bone is followed from both.
  *
  * At least one of the optional inputs must be there. The output is a \ref ContourStack with layers 0 (periosteal, holes
@@ -30,116 +29,51 @@ namespace bone
  * each other, none of them around a hole, and these several medullary ones; nested contours keep MinimumLayerDistance.
  * Where the bone meets the first or last image slice the stack is open there and a warning says so.
  *
- * Inner layers: \ref FindInnerLayers. Snakes: \ref EvolveSnake. Results do not depend on the number of threads.
+ * The snakes are those of M. Kass, A. Witkin, D. Terzopoulos, doi:10.1007/BF00133570, drawn by gradient vector flow (C.
+ * Xu, J. L. Prince, doi:10.1109/83.661186). The cortex ends where the CT falls half-way from its maximum to the level
+ * inside, along a profile from each point of a periosteal contour, filtered along the surface. Parameters: \ref
+ * SnakeContourParameters. Results do not depend on the number of threads.
  *
  * Errors (itk::ExceptionObject): no start given; a parameter out of range; an image of one slice; axes not at right
  * angles; the label does not occur; initial contours off the image or not parallel to its slices; no voxel inside the
  * contours reaches BoneThreshold.
  *
- * \tparam TInputImage a scalar itk::Image of dimension 3. \tparam TContourStack \ref ContourStack. */
-template <typename TInputImage, typename TContourStack = ContourStack>
-class SnakeContourFilter : public itk::ProcessObject
+ * \tparam TInputImage the CT, an itk::Image of dimension 3 of any scalar
+ * \tparam TLabelImage the label image, an itk::Image of dimension 3 of any scalar; NaN is no label */
+template <typename TInputImage, typename TLabelImage = itk::Image<short, 3>>
+class SnakeContourFilter : public ContourSource
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(SnakeContourFilter);
   using Self = SnakeContourFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = ContourSource;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(SnakeContourFilter, itk::ProcessObject);
+  itkTypeMacro(SnakeContourFilter, ContourSource);
 
   using InputImageType = TInputImage;
-  using ContourStackType = TContourStack;
-  using LabelImageType = itk::Image<short, 3>;
-  static_assert(TInputImage::ImageDimension == 3, "SnakeContourFilter needs a three-dimensional image");
+  using LabelImageType = TLabelImage;
+  static_assert(TInputImage::ImageDimension == 3 && TLabelImage::ImageDimension == 3,
+                "SnakeContourFilter needs three-dimensional images");
 
-  using Superclass::SetInput;
+  using itk::ProcessObject::SetInput;
   void
-  SetInput(const TInputImage * image);
+  SetInput(const TInputImage * image)
+  {
+    this->SetPrimaryInput(const_cast<TInputImage *>(image));
+  }
   const TInputImage *
-  GetInput() const;
-  void
-  SetLabelImage(const LabelImageType * image);
-  const LabelImageType *
-  GetLabelImage() const;
-  void
-  SetInitialContours(const TContourStack * contours);
-  const TContourStack *
-  GetInitialContours() const;
-  TContourStack *
-  GetOutput();
-  const TContourStack *
-  GetOutput() const;
+  GetInput() const
+  {
+    return itkDynamicCastInDebugMode<const TInputImage *>(this->GetPrimaryInput());
+  }
+  itkSetInputMacro(LabelImage, TLabelImage);
+  itkGetInputMacro(LabelImage, TLabelImage);
+  itkSetInputMacro(InitialContours, ContourStack);
+  itkGetInputMacro(InitialContours, ContourStack);
 
-  /** Image axis (0, 1, 2) that the slices follow one another along. Default 2. */
-  itkSetMacro(Axis, unsigned int);
-  itkGetConstMacro(Axis, unsigned int);
-  /** Distance between slices, mm; 0 (default): every slice of the image. Other planes are interpolated; with a label
-   * the distance is made smaller as needed for the first and last plane to fall on the label's first and last slice. */
-  itkSetMacro(SliceStep, double);
-  itkGetConstMacro(SliceStep, double);
-  /** Value in the label image; 0 (default): every voxel that is not 0. */
-  itkSetMacro(Label, int);
-  itkGetConstMacro(Label, int);
-
-  /** Whether a label's outline is moved to the CT's edges. Default off: the contours keep the label's area. */
-  itkSetMacro(RefineLabelOutline, bool);
-  itkGetConstMacro(RefineLabelOutline, bool);
-  itkBooleanMacro(RefineLabelOutline);
-  /** Bound on that motion, mm; 0 (default): half a pixel, as far as a label is off at its best. */
-  itkSetMacro(RefineDistance, double);
-  itkGetConstMacro(RefineDistance, double);
-  /** Whether the bone is followed from the slices that the label marks to the others (a label painted on a few slices):
-   * these are then settled on the CT as initial contours are. Default off: the bone ends where its label does. */
-  itkSetMacro(FollowLabel, bool);
-  itkGetConstMacro(FollowLabel, bool);
-  itkBooleanMacro(FollowLabel);
-
-  /** Snake: weight of |x'|^2 (mm^2, default 0.02), of |x''|^2 (mm^4, default 0.3) and of the image's force (default 1).
-   */
-  itkSetMacro(Elasticity, double);
-  itkGetConstMacro(Elasticity, double);
-  itkSetMacro(Rigidity, double);
-  itkGetConstMacro(Rigidity, double);
-  itkSetMacro(ExternalWeight, double);
-  itkGetConstMacro(ExternalWeight, double);
-  /** Snake: iterations at most (default 200); converged when the root mean square motion of the points is less (mm,
-   * default 0.01). */
-  itkSetMacro(MaximumNumberOfIterations, int);
-  itkGetConstMacro(MaximumNumberOfIterations, int);
-  itkSetMacro(ConvergenceTolerance, double);
-  itkGetConstMacro(ConvergenceTolerance, double);
-  /** Least slope of an edge, HU/mm. Default 40. */
-  itkSetMacro(MinimumEdgeSlope, double);
-  itkGetConstMacro(MinimumEdgeSlope, double);
-
-  /** How many layers: 1 periosteal, 2 with endosteal, 3 (default) with medullary contours. */
-  itkSetMacro(NumberOfLayers, int);
-  itkGetConstMacro(NumberOfLayers, int);
-  /** Least distance between a contour and the next inside it, mm; 0 (default): 0.8 mm or a pixel, whichever is more. */
-  itkSetMacro(MinimumLayerDistance, double);
-  itkGetConstMacro(MinimumLayerDistance, double);
-  /** Contours and holes of less area are left out, mm^2. Default 4. */
-  itkSetMacro(MinimumContourArea, double);
-  itkGetConstMacro(MinimumContourArea, double);
-  /** Whether pieces and holes of a single slice, and bodies of few slices or little volume, are kept. Default off: they
-   * are left out, and a warning counts them. */
-  itkSetMacro(KeepSmallPieces, bool);
-  itkGetConstMacro(KeepSmallPieces, bool);
-  itkBooleanMacro(KeepSmallPieces);
-  /** What never reaches it is no bone, HU. Default 150. */
-  itkSetMacro(BoneThreshold, double);
-  itkGetConstMacro(BoneThreshold, double);
-  /** End of the cortex, HU; 0 (default): half-way from the local maximum to the level inside. */
-  itkSetMacro(EndostealThreshold, double);
-  itkGetConstMacro(EndostealThreshold, double);
-  /** The medullary cavity lies below, HU. Default 40. */
-  itkSetMacro(MedullaryThreshold, double);
-  itkGetConstMacro(MedullaryThreshold, double);
-  /** Depth to which the end of the cortex is sought, mm. Default 12. */
-  itkSetMacro(MaximumCorticalThickness, double);
-  itkGetConstMacro(MaximumCorticalThickness, double);
+  BONE_FILTER_PARAMETERS(SnakeContourParameters, BONE_SNAKE_CONTOUR_PARAMETERS)
 
   /** After an update: what happened slice by slice, and what a person should know. */
   const ExtractionReport &
@@ -153,88 +87,42 @@ public:
     return m_Report.warnings;
   }
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
-
 protected:
   SnakeContourFilter();
   ~SnakeContourFilter() override = default;
 
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  VerifyInputInformation() ITKv5_CONST override;
+  VerifyInputInformation() const override;
+  /** Contours take no information from images. */
+  void
+  GenerateOutputInformation() override
+  {}
   void
   GenerateData() override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  /** The image's slices in the stack's frame. */
-  struct Frame
-  {
-    unsigned int axes[3]; ///< image axes along U, V, N
-    Vector3      u;
-    Vector3      v;
-    Vector3      normal;
-    Vector2      origin; ///< of the buffer's first voxel, plane coordinates
-    Vector2      pixel;  ///< mm
-    SliceRange   slices;
-    int          size[3];
-  };
-
-  Frame
-  MakeFrame() const;
+  /** The frame, and the image axes along its U, V and normal. */
+  SliceFrame
+  MakeFrame(std::array<unsigned int, 3> & axes) const;
   PlaneSource
-  MakePlaneSource(const Frame & frame) const;
-  ParallelFor
-  MakeParallelFor();
-  ExtractionParameters
-  MakeParameters(const Frame & frame) const;
+  MakePlaneSource(const SliceFrame & frame, const std::array<unsigned int, 3> & axes) const;
 
   bool
-  HasLabel(short value) const
+  HasLabel(const typename TLabelImage::PixelType & value) const
   {
-    return m_Label != 0 ? value == m_Label : value != 0;
+    const auto number = static_cast<double>(value);
+    return m_Parameters.label != 0 ? number == m_Parameters.label : number < 0.0 || number > 0.0;
   }
-  /** The label's bounding box, and the heights of its lowest and highest voxel. */
-  typename LabelImageType::RegionType
-  FindLabel(const Frame & frame, double & low, double & high) const;
-  /** The label's bounding box with a margin, and which of its voxels have the label. */
-  VoxelBox
-  CropLabel(std::vector<unsigned char> & inside, const Frame & frame, double & low, double & high) const;
-  std::vector<BoneSection>
-  SectionsFromLabel(const Frame & frame, const ExtractionParameters & parameters, const ParallelFor & parallel);
-  std::vector<BoneSection>
-  SectionsFromContours(const Frame & frame) const;
-  void
-  InsertInitialContours(const Frame & frame, std::vector<BoneSection> & sections) const;
-  void
-  SetOpenEnds(const Frame & frame, const std::vector<BoneSection> & sections);
-  void
-  ReportProgress(float progress);
+  /** The label's bounding box; sets the heights of its lowest and highest voxel. */
+  typename TLabelImage::RegionType
+  FindLabel(const SliceFrame & frame, LabelVoxels & voxels) const;
+  LabelVoxels
+  CropLabel(const SliceFrame & frame) const;
 
-  unsigned int     m_Axis{ 2 };
-  double           m_SliceStep{ 0.0 };
-  int              m_Label{ 0 };
-  bool             m_RefineLabelOutline{ false };
-  bool             m_FollowLabel{ false };
-  double           m_RefineDistance{ 0.0 };
-  double           m_Elasticity{ 0.02 };
-  double           m_Rigidity{ 0.3 };
-  double           m_ExternalWeight{ 1.0 };
-  int              m_MaximumNumberOfIterations{ 200 };
-  double           m_ConvergenceTolerance{ 0.01 };
-  double           m_MinimumEdgeSlope{ 40.0 };
-  int              m_NumberOfLayers{ 3 };
-  double           m_MinimumLayerDistance{ 0.0 };
-  double           m_MinimumContourArea{ 4.0 };
-  bool             m_KeepSmallPieces{ false };
-  double           m_BoneThreshold{ 150.0 };
-  double           m_EndostealThreshold{ 0.0 };
-  double           m_MedullaryThreshold{ 40.0 };
-  double           m_MaximumCorticalThickness{ 12.0 };
   ExtractionReport m_Report;
 };
 } // namespace bone

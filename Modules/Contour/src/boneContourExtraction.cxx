@@ -3,396 +3,215 @@
  *=========================================================================*/
 #include "boneContourExtraction.h"
 
-#include "boneBoneFollower.h"
-#include "boneLayerDistance.h"
-#include "bonePlanarCrossing.h"
+#include "boneLabelContours.h"
+#include "boneSectionExtraction.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <sstream>
+#include <stdexcept>
 
 namespace bone
 {
 namespace
 {
-std::vector<Polygon>
-LoopsOf(const BoneSection & section)
+std::vector<Section>
+SectionsFromLabel(const SliceFrame &           frame,
+                  const LabelVoxels &          label,
+                  const ExtractionParameters & parameters,
+                  const Execution &            execution,
+                  ExtractionReport &           report)
 {
-  std::vector<Polygon> loops;
-  for (const BonePiece & piece : section.pieces)
+  const VoxelBox & box = label.box;
+  const LabelField field(box, label.inside, 0.8, execution.Part(0.0, 0.5));
+  std::vector<Polygon> corners(1);
+  for (int c = 0; c < 8; ++c)
   {
-    loops.push_back(piece.outer);
-    loops.insert(loops.end(), piece.holes.begin(), piece.holes.end());
+    const Vector3 index((c & 1) * (box.size[0] - 1), (c >> 1 & 1) * (box.size[1] - 1), (c >> 2) * (box.size[2] - 1));
+    const Vector3 corner = box.origin + box.direction * index.cwiseProduct(box.spacing);
+    corners[0].push_back({ corner.dot(frame.u), corner.dot(frame.v) });
   }
-  return loops;
-}
-
-bool
-AnyCrossing(const std::vector<Polygon> & loops)
-{
-  std::vector<PlanarChain> chains;
-  for (const Polygon & loop : loops)
+  const PlaneGrid grid = CoveringGrid(corners, 0.0, frame.origin, frame.pixel);
+  auto            sections = parameters.followLabel ? PlaceSectionsThrough(frame.slices, label.low, parameters.sliceStep)
+                                           : PlaceSections(frame.slices, label.low, label.high, parameters.sliceStep);
+  if (sections.empty())
   {
-    chains.push_back({ loop, true });
+    throw std::runtime_error("The label lies beyond the CT's slices; are both images of the same space?");
   }
-  return FindPlanarCrossing(chains).found;
-}
-
-PlaneField
-PlaneAround(const std::vector<Polygon> & loops, double height, double margin, const PlaneSource & planes)
-{
-  const PlaneGrid box = CoveringGrid(loops, margin, Vector2::Zero(), Vector2::Ones());
-  return planes(height, box.origin, box.Node(box.size[0] - 1, box.size[1] - 1));
-}
-
-double
-Smoothing(const ExtractionParameters & parameters, const Vector2 & pixel)
-{
-  return parameters.edgeSmoothing > 0.0 ? parameters.edgeSmoothing : 0.5 * pixel.maxCoeff();
-}
-
-void
-AddResult(const SnakeResult & snake, SliceReport & report)
-{
-  report.iterations += snake.iterations;
-  report.converged = report.converged && snake.converged;
-  report.energy += snake.energy;
-  report.support = std::min(report.support, snake.support);
-}
-
-void
-AddEvent(SliceReport & report, const std::string & event)
-{
-  report.events += (report.events.empty() ? "" : "; ") + event;
-}
-
-// The contours of the union of the loops' insides (each loop by itself, holes taken away).
-std::vector<Polygon>
-UnionOutline(const std::vector<Polygon> & loops, double pixel)
-{
-  const PlaneGrid grid = CoveringGrid(loops, 3.0 * pixel, loops.front().front(), Vector2::Constant(0.5 * pixel));
-  PlaneField      field{ grid, std::vector<float>(grid.Count(), -1e9F) };
-  for (const bool hole : { false, true })
-  {
-    for (const Polygon & loop : loops)
-    {
-      if ((SignedArea(loop) < 0.0) == hole)
-      {
-        const PlaneField distance = ComputeDistanceField({ loop }, grid).distance;
-        for (std::size_t n = 0; n < field.values.size(); ++n)
-        {
-          field.values[n] =
-            hole ? std::min(field.values[n], -distance.values[n]) : std::max(field.values[n], distance.values[n]);
-        }
-      }
-    }
-  }
-  return ExtractLevelContours(field, 0.0);
-}
-
-// Snakes on a slice of followed bone.
-class SliceSnakes
-{
-public:
-  SliceSnakes(const PlaneSource & planes, const Vector2 & pixel, const ExtractionParameters & parameters)
-    : m_Planes(planes)
-    , m_Pixel(pixel)
-    , m_Parameters(parameters)
-  {}
-
-  // Draws the outlines of the pieces to the bone's edges; keeps them where that makes them cross.
-  void
-  Settle(BoneSection & section, bool drawn, SliceReport & report) const
-  {
-    if (section.pieces.empty())
+  std::vector<int> dropped(sections.size(), 0);
+  const double     slack = 0.5 * frame.slices.step;
+  execution.Part(0.5, 1.0).For(sections.size(), [&](std::size_t k) {
+    if (parameters.followLabel && !(sections[k].height > label.low - slack && sections[k].height < label.high + slack))
     {
       return;
     }
-    const std::vector<Polygon> start = LoopsOf(section);
-    const PlaneField           plane = PlaneAround(start, section.height, 12.0 * m_Pixel.maxCoeff(), m_Planes);
-    const BoneEdges            edges(
-      plane, drawn ? start : std::vector<Polygon>{}, Smoothing(m_Parameters, m_Pixel), m_Parameters.minimumSlope);
-    std::vector<Polygon> loops;
-    for (const Polygon & loop : start)
-    {
-      // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does.
-      SnakeResult snake = drawn ? EvolveSnake(loop, edges, m_Parameters.snake)
-                                : RefineSnake(loop, edges, 2.0 * m_Pixel.maxCoeff(), m_Parameters.snake);
-      const bool  turned = SignedArea(snake.contour) * SignedArea(loop) <= 0.0;
-      AddResult(snake, report);
-      loops.push_back(snake.contour.empty() || turned ? loop : std::move(snake.contour));
-    }
-    if (AnyCrossing(loops))
-    {
-      loops = UnionOutline(loops, m_Pixel.maxCoeff());
-      AddEvent(report, "contours met and were joined or parted");
-    }
-    int dropped = 0;
-    section.pieces = GroupPieces(std::move(loops), m_Parameters.minimumArea, dropped);
-  }
-
-private:
-  const PlaneSource &          m_Planes;
-  Vector2                      m_Pixel;
-  const ExtractionParameters & m_Parameters;
-};
-
-// What a person should look at, by event, with the heights between which it happened.
-std::vector<std::string>
-SummariseEvents(const std::vector<SliceReport> & slices)
-{
-  struct Range
+    sections[k].pieces =
+      ContoursOfLabel(field, grid, frame.u, frame.v, sections[k].height, parameters.minimumContourArea, dropped[k]);
+  });
+  const int sum = std::accumulate(dropped.begin(), dropped.end(), 0);
+  if (sum > 0)
   {
-    double low;
-    double high;
-    int    count;
-  };
-  const std::vector<std::string> usual = { "the bone ends", "another piece joins" };
-  std::map<std::string, Range>   ranges;
-  for (const SliceReport & slice : slices)
-  {
-    std::istringstream events(slice.events);
-    for (std::string event; std::getline(events >> std::ws, event, ';');)
-    {
-      if (std::find(usual.begin(), usual.end(), event) == usual.end())
-      {
-        const auto found = ranges.insert({ event.substr(0, event.find(", by a")), { slice.height, slice.height, 0 } });
-        found.first->second.high = slice.height;
-        ++found.first->second.count;
-      }
-    }
-  }
-  std::vector<std::string> lines;
-  for (const auto & item : ranges)
-  {
-    std::ostringstream line;
-    line << "Look at the contours ";
-    if (item.second.count > 1)
-    {
-      line << "between " << item.second.low << " and " << item.second.high << " mm (" << item.second.count
-           << " slices)";
-    }
-    else
-    {
-      line << "at " << item.second.low << " mm";
-    }
-    line << ": " << item.first << '.';
-    lines.push_back(line.str());
-  }
-  return lines;
-}
-
-std::vector<BoneSection>
-EvenSections(double first, double step, double last, double slack)
-{
-  std::vector<BoneSection> sections;
-  for (int k = 0; first + k * step <= last + slack; ++k)
-  {
-    sections.push_back({ first + k * step, {} });
+    report.warnings.push_back("Left out " + std::to_string(sum) + " contours or holes smaller than " +
+                                std::to_string(parameters.minimumContourArea) + " mm^2.");
   }
   return sections;
 }
 
-// Moves `inner` away from `fixed`, unless it would then cross something.
-void
-KeepApart(Polygon & inner, const Polygon & fixed, bool inside, double distance)
+std::vector<Section>
+SectionsFromContours(const SliceFrame & frame, const ContourStack & initial, const ExtractionParameters & parameters)
 {
-  const Polygon before = inner;
-  MoveAway(inner, fixed, inside, distance);
-  if (AnyCrossing({ inner, fixed }))
+  double anchor = std::numeric_limits<double>::quiet_NaN();
+  for (const ContourSlice & slice : initial.GetSlices())
   {
-    inner = before;
+    if (!slice.contours.empty() && !std::isfinite(anchor))
+    {
+      anchor = slice.origin.dot(frame.normal);
+    }
+  }
+  if (!std::isfinite(anchor))
+  {
+    throw std::runtime_error("The input 'InitialContours' holds no contour.");
+  }
+  return PlaceSectionsThrough(frame.slices, anchor, parameters.sliceStep);
+}
+
+// Gives each drawn contour to the section nearest to it.
+void
+InsertInitialContours(const SliceFrame &           frame,
+                      const ContourStack &         initial,
+                      const ExtractionParameters & parameters,
+                      std::vector<Section> &       sections)
+{
+  if (!(std::abs(initial.GetNormal().dot(frame.normal)) > 1.0 - 1e-4))
+  {
+    throw std::runtime_error("The initial contours' planes are not parallel to the image's slices along axis " +
+                             std::to_string(parameters.axis) + "; set another Axis or redraw them.");
+  }
+  std::vector<double> nearest(sections.size(), std::numeric_limits<double>::max());
+  for (const ContourSlice & slice : initial.GetSlices())
+  {
+    const double height = slice.origin.dot(frame.normal);
+    const auto   section = std::min_element(sections.begin(), sections.end(), [height](const auto & a, const auto & b) {
+      return std::abs(a.height - height) < std::abs(b.height - height);
+    });
+    std::vector<Polygon> loops;
+    for (const Contour & contour : slice.contours)
+    {
+      if (contour.axis || contour.layer != 0)
+      {
+        continue;
+      }
+      Polygon loop;
+      for (const Vector3 & point : contour.points)
+      {
+        loop.push_back({ point.dot(frame.u), point.dot(frame.v) });
+      }
+      if ((SignedArea(loop) < 0.0) != (contour.region == Region::Outside))
+      {
+        std::reverse(loop.begin(), loop.end());
+      }
+      loops.push_back(std::move(loop));
+    }
+    const double step = parameters.sliceStep > 0.0 ? parameters.sliceStep : frame.slices.step;
+    if (!loops.empty() && !(std::abs(section->height - height) <= step))
+    {
+      std::ostringstream text;
+      text << "An initial contour at " << height << " mm along axis " << parameters.axis
+           << " lies beyond the CT's slices.";
+      throw std::runtime_error(text.str());
+    }
+    const auto k = static_cast<std::size_t>(section - sections.begin());
+    if (!loops.empty() && std::abs(section->height - height) < nearest[k])
+    {
+      nearest[k] = std::abs(section->height - height);
+      int dropped = 0;
+      section->pieces = GroupPieces(std::move(loops), 0.0, dropped);
+    }
   }
 }
 
-// Inner layers come from a grid, a little off their least distance. What cannot be had without crossings is left.
 void
-KeepLayersApart(BonePiece & piece, double distance)
+SetOpenEnds(const SliceFrame &           frame,
+            const std::vector<Section> & sections,
+            ContourStack &               contours,
+            ExtractionReport &           report)
 {
-  const BonePiece before = piece;
-  for (Polygon & endosteal : piece.endosteal)
+  const double top = frame.slices.Top();
+  const double slack = 0.5 * frame.slices.step;
+  const bool   start = sections.front().height < frame.slices.first + slack;
+  const bool   end = sections.back().height > top - slack;
+  contours.SetOpenStart(start);
+  contours.SetOpenEnd(end);
+  if (start || end)
   {
-    KeepApart(endosteal, piece.outer, true, distance);
-    for (const Polygon & hole : piece.holes)
-    {
-      KeepApart(endosteal, hole, false, distance);
-    }
+    report.warnings.push_back(std::string("The bone leaves the image at its ") +
+                                (start && end ? "first and last"
+                                 : start      ? "first"
+                                              : "last") +
+                                " slice; it is cut flat there.");
   }
-  for (Polygon & medullary : piece.medullary)
+  const Vector2 last =
+    frame.origin + Vector2((frame.size[0] - 1) * frame.pixel.x(), (frame.size[1] - 1) * frame.pixel.y());
+  const bool aside = std::any_of(sections.begin(), sections.end(), [&](const Section & section) {
+    return std::any_of(section.pieces.begin(), section.pieces.end(), [&](const SectionPiece & piece) {
+      return std::any_of(piece.outer.begin(), piece.outer.end(), [&](const Vector2 & q) {
+        return (q - frame.origin).minCoeff() < 0.0 || (last - q).minCoeff() < 0.0;
+      });
+    });
+  });
+  if (aside)
   {
-    for (const Polygon & endosteal : piece.endosteal)
-    {
-      if (PointInPolygon(medullary.front(), endosteal))
-      {
-        KeepApart(medullary, endosteal, true, distance);
-      }
-    }
-  }
-  std::vector<Polygon> loops = piece.holes;
-  loops.push_back(piece.outer);
-  loops.insert(loops.end(), piece.endosteal.begin(), piece.endosteal.end());
-  loops.insert(loops.end(), piece.medullary.begin(), piece.medullary.end());
-  if (AnyCrossing(loops))
-  {
-    piece = before;
+    report.warnings.push_back("The bone leaves the image at the border of its slices; it is cut there.");
   }
 }
 } // namespace
 
-std::vector<BoneSection>
-PlaceSections(const SliceRange & slices, double low, double high, double step)
-{
-  const double slack = 1e-6 * slices.step;
-  low = std::max(low, slices.first);
-  high = std::min(high, slices.Top());
-  if (step > 0.0)
-  {
-    const double parts = std::max(1.0, std::ceil((high - low - slack) / step));
-    return EvenSections(low, high > low ? (high - low) / parts : step, high, slack);
-  }
-  const double first = slices.first + slices.step * std::floor((low - slices.first) / slices.step + 0.5 - 1e-6);
-  return EvenSections(first, slices.step, std::min(high + 0.5 * slices.step - slack, slices.Top()), slack);
-}
-
-std::vector<BoneSection>
-PlaceSectionsThrough(const SliceRange & slices, double anchor, double step)
-{
-  const double slack = 1e-6 * slices.step;
-  if (!(step > 0.0))
-  {
-    return EvenSections(slices.first, slices.step, slices.Top(), slack);
-  }
-  const double first = anchor - step * std::floor((anchor - slices.first + slack) / step);
-  return EvenSections(first, step, slices.Top(), slack);
-}
-
-double
-BrightestWithin(const std::vector<BoneSection> & sections, const PlaneSource & planes, double enough)
-{
-  double brightest = std::numeric_limits<double>::lowest();
-  for (const BoneSection & section : sections)
-  {
-    for (const BonePiece & piece : section.pieces)
-    {
-      const PlaneField plane = PlaneAround({ piece.outer }, section.height, 0.0, planes);
-      brightest = std::max<double>(brightest, *std::max_element(plane.values.begin(), plane.values.end()));
-      if (brightest >= enough)
-      {
-        return brightest;
-      }
-    }
-  }
-  return brightest;
-}
-
 void
-RefineSections(std::vector<BoneSection> &   sections,
-               const PlaneSource &          planes,
-               const Vector2 &              pixel,
-               const ExtractionParameters & parameters,
-               const ParallelFor &          parallel,
-               ExtractionReport &           report)
+ExtractContours(const SliceFrame &             frame,
+                const PlaneSource &            planes,
+                const LabelVoxels *            label,
+                const ContourStack *           initial,
+                const SnakeContourParameters & given,
+                const Execution &              execution,
+                ContourStack &                 contours,
+                ExtractionReport &             report)
 {
-  report.slices.resize(sections.size());
-  parallel(sections.size(), [&](std::size_t k) {
-    BoneSection & section = sections[k];
-    SliceReport & line = report.slices[k];
-    line.height = section.height;
-    if (section.pieces.empty())
-    {
-      return;
-    }
-    const std::vector<Polygon> start = LoopsOf(section);
-    const PlaneField           plane = PlaneAround(start, section.height, 8.0 * pixel.maxCoeff(), planes);
-    const BoneEdges            edges(plane, {}, Smoothing(parameters, pixel), parameters.minimumSlope);
-    BoneSection                refined = section;
-    // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does. What
-    // finds few edges, or is so small that it shrinks, stays as it is.
-    const auto refine = [&](Polygon & loop) {
-      SnakeResult result = RefineSnake(loop, edges, parameters.refineDistance, parameters.snake);
-      AddResult(result, line);
-      if (result.support >= 0.5 && SignedArea(result.contour) / SignedArea(loop) > 0.75)
-      {
-        loop = std::move(result.contour);
-      }
-    };
-    for (BonePiece & piece : refined.pieces)
-    {
-      refine(piece.outer);
-      std::for_each(piece.holes.begin(), piece.holes.end(), refine);
-    }
-    if (AnyCrossing(LoopsOf(refined)))
-    {
-      AddEvent(line, "refinement given up: contours would cross");
-      return;
-    }
-    section = std::move(refined);
-  });
-}
-
-void
-PropagateSections(std::vector<BoneSection> &   sections,
-                  const PlaneSource &          planes,
-                  const Vector2 &              pixel,
-                  const ExtractionParameters & parameters,
-                  const ParallelFor &          parallel,
-                  ExtractionReport &           report)
-{
-  FollowParameters following;
-  following.threshold = parameters.boneThreshold;
-  following.minimumArea = parameters.minimumArea;
-  std::vector<char> drawn;
-  for (const BoneSection & section : sections)
+  const ExtractionParameters parameters(given, frame.pixel.maxCoeff(), frame.slices.step);
+  std::vector<Section>       sections =
+    label != nullptr ? SectionsFromLabel(frame, *label, parameters, execution.Part(0.0, 0.3), report)
+                     : SectionsFromContours(frame, *initial, parameters);
+  if (label != nullptr && parameters.refineLabelOutline && !parameters.followLabel)
   {
-    drawn.push_back(!section.pieces.empty());
+    RefineSections(sections, planes, frame.pixel, parameters, execution.Part(0.3, 0.4), report);
   }
-  const BoneFollower             follower(planes, pixel, following);
-  const std::vector<std::string> events = follower.Follow(sections, parameters.followStep);
-  const SliceSnakes              snakes(planes, pixel, parameters);
-  report.slices.resize(sections.size());
-  parallel(sections.size(), [&](std::size_t k) {
-    report.slices[k].height = sections[k].height;
-    report.slices[k].events = events[k];
-    snakes.Settle(sections[k], drawn[k] != 0, report.slices[k]);
-  });
-  const std::vector<std::string> lines = SummariseEvents(report.slices);
-  report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
-}
-
-void
-FinishSections(std::vector<BoneSection> &   sections,
-               const PlaneSource &          planes,
-               const Vector2 &              pixel,
-               const ExtractionParameters & parameters,
-               const ParallelFor &          parallel,
-               ExtractionReport &           report)
-{
-  std::vector<std::string> lines;
-  if (!parameters.keepSmallPieces)
+  if (initial != nullptr)
   {
-    lines = DropShortLived(sections, 3, parameters.minimumVolume);
+    InsertInitialContours(frame, *initial, parameters, sections);
   }
-  report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
-  report.slices.resize(sections.size());
-  const auto empty = [](const BoneSection & section) { return section.pieces.empty(); };
-  const auto first = std::find_if_not(sections.begin(), sections.end(), empty) - sections.begin();
-  const auto tail = std::find_if_not(sections.rbegin(), sections.rend(), empty) - sections.rbegin();
-  const auto last = std::max(first, static_cast<std::ptrdiff_t>(sections.size()) - tail);
-  sections = { sections.begin() + first, sections.begin() + last };
-  report.slices = { report.slices.begin() + first, report.slices.begin() + last };
-  for (std::size_t k = 0; k < sections.size(); ++k)
+  execution.Report(0.4);
+  const double brightest = BrightestWithin(sections, planes, parameters.boneThreshold);
+  if (!(brightest >= parameters.boneThreshold))
   {
-    report.slices[k].height = sections[k].height;
+    std::ostringstream text;
+    text << "The CT holds no bone: within the contours its highest value is " << brightest
+         << ", below BoneThreshold (" << parameters.boneThreshold << "). Do the CT and its start belong together?";
+    throw std::runtime_error(text.str());
   }
-  lines = FindInnerLayers(sections, planes, pixel, parameters.layers, parallel);
-  parallel(sections.size(), [&](std::size_t k) {
-    for (BonePiece & piece : sections[k].pieces)
-    {
-      KeepLayersApart(piece, parameters.layers.minimumDistance);
-    }
-  });
-  report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
+  if (label == nullptr || parameters.followLabel)
+  {
+    PropagateSections(sections, planes, frame.pixel, parameters, execution.Part(0.4, 0.6), report);
+  }
+  FinishSections(sections, planes, frame.pixel, parameters, execution.Part(0.6, 0.95), report);
+  if (sections.empty())
+  {
+    throw std::runtime_error(std::string("No contour is left: ") +
+                             (label != nullptr ? "the label has too few voxels, or they do not hang together."
+                                               : "the initial contours found no edge of bone to rest on."));
+  }
+  contours.SetFrame(frame.u, frame.v);
+  contours.SetSlices(ToSlices(sections, contours));
+  SetOpenEnds(frame, sections, contours, report);
 }
 } // namespace bone

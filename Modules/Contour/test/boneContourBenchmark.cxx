@@ -87,7 +87,7 @@ Resample(benchmark::State & state)
 {
   for ([[maybe_unused]] auto step : state)
   {
-    auto filter = ContourResampleFilter<>::New();
+    auto filter = ContourResampleFilter::New();
     filter->SetInput(Labelled()->GetOutput());
     filter->Update();
     benchmark::DoNotOptimize(filter->GetOutput());
@@ -99,12 +99,12 @@ BENCHMARK(Resample)->Unit(benchmark::kMillisecond)->UseRealTime();
 void
 MedialAxis(benchmark::State & state)
 {
-  auto resample = ContourResampleFilter<>::New();
+  auto resample = ContourResampleFilter::New();
   resample->SetInput(Labelled()->GetOutput());
   resample->Update();
   for ([[maybe_unused]] auto step : state)
   {
-    auto filter = MedialAxisFilter<>::New();
+    auto filter = MedialAxisFilter::New();
     filter->SetInput(resample->GetOutput());
     filter->Update();
     benchmark::DoNotOptimize(filter->GetOutput());
@@ -184,9 +184,9 @@ WholeJob(benchmark::State & state)
       snake->SetLabelImage(whole.labels);
       snake->SetRefineLabelOutline(state.range(1) == 1);
     }
-    auto resample = ContourResampleFilter<>::New();
+    auto resample = ContourResampleFilter::New();
     resample->SetInput(snake->GetOutput());
-    auto axes = MedialAxisFilter<>::New();
+    auto axes = MedialAxisFilter::New();
     axes->SetInput(resample->GetOutput());
     axes->Update();
     benchmark::DoNotOptimize(axes->GetOutput());

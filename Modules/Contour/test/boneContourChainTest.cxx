@@ -25,8 +25,8 @@ Tube(double x, double y, double z)
 struct Chain
 {
   Snake::Pointer                   snake = Snake::New();
-  ContourResampleFilter<>::Pointer resample = ContourResampleFilter<>::New();
-  MedialAxisFilter<>::Pointer      axes = MedialAxisFilter<>::New();
+  ContourResampleFilter::Pointer resample = ContourResampleFilter::New();
+  MedialAxisFilter::Pointer      axes = MedialAxisFilter::New();
 
   const ContourStack &
   Run()

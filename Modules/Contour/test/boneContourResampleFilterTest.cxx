@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneContourResampleFilter.h"
 
+#include "boneClosedBSpline.h"
+#include "boneContourSampling.h"
 #include "boneContourTestTools.h"
 
 #include <gmock/gmock.h>
@@ -16,10 +18,10 @@ namespace
 {
 using testing::HasSubstr;
 
-ContourResampleFilter<>::Pointer
+ContourResampleFilter::Pointer
 Resampler(ContourStack * stack, double maximumSpacing)
 {
-  auto filter = ContourResampleFilter<>::New();
+  auto filter = ContourResampleFilter::New();
   filter->SetInput(stack);
   filter->SetMaximumSpacing(maximumSpacing);
   return filter;
@@ -217,7 +219,7 @@ TEST(ContourResampleFilter, NestedContoursKeepTheirDistanceAtAnySpacing)
 
 TEST(ContourResampleFilter, InnerContoursOfOneLayerKeepTheirDistanceFromEachOther)
 {
-  // Two halves of a spongy layer, 0.9 mm apart, wavy where they face each other.
+  // Two halves of a trabecular layer, 0.9 mm apart, wavy where they face each other.
   const auto half = [](double side) {
     Polygon loop;
     for (int i = 0; i <= 200; ++i)

@@ -4,6 +4,7 @@
 #include "boneContourSliceFilter.h"
 
 #include "boneContourTestTools.h"
+#include "boneSliceSelection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +62,7 @@ HeightsOf(const ContourStack & stack)
 
 TEST(ContourSliceFilter, KeepsAllByDefault)
 {
-  auto filter = ContourSliceFilter<>::New();
+  auto filter = ContourSliceFilter::New();
   filter->SetInput(Shoulder());
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetSlices().size(), 40U);
@@ -70,7 +71,7 @@ TEST(ContourSliceFilter, KeepsAllByDefault)
 
 TEST(ContourSliceFilter, SlicesGatherWhereSectionsChange)
 {
-  auto filter = ContourSliceFilter<>::New();
+  auto filter = ContourSliceFilter::New();
   filter->SetInput(Shoulder());
   filter->SetMeanSpacing(5.0);
   filter->Update();
@@ -93,38 +94,26 @@ TEST(ContourSliceFilter, SlicesGatherWhereSectionsChange)
 TEST(ContourSliceFilter, ChoosesBetterThanEvenSpacing)
 {
   // The volume misplaced by the chosen slices is no more than by any even choice of as many.
-  const auto serial = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      body(i);
-    }
-  };
   auto         stack = Shoulder();
-  const double best = SelectSlices(*stack, 9, 9.0, serial).volume;
+  const double best = SelectSlices(*stack, 9, 9.0, Execution()).volume;
   for (const double gap : { 5.0, 6.0, 7.0 })
   {
     // A smaller gap leaves fewer choices.
-    EXPECT_LE(best, SelectSlices(*stack, 9, gap, serial).volume);
+    EXPECT_LE(best, SelectSlices(*stack, 9, gap, Execution()).volume);
   }
   // More slices never misplace more.
-  EXPECT_LE(SelectSlices(*stack, 12, 9.0, serial).volume, best);
-  EXPECT_EQ(SelectSlices(*stack, 40, 9.0, serial).volume, 0.0);
+  EXPECT_LE(SelectSlices(*stack, 12, 9.0, Execution()).volume, best);
+  EXPECT_EQ(SelectSlices(*stack, 40, 9.0, Execution()).volume, 0.0);
 }
 
 TEST(ContourSliceFilter, GapsComeBeforeTheNumberOfSlices)
 {
-  const auto serial = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      body(i);
-    }
-  };
-  EXPECT_EQ(SelectSlices(*Shoulder(), 2, 13.0, serial).slices, (std::vector<std::size_t>{ 0, 13, 26, 39 }));
+  EXPECT_EQ(SelectSlices(*Shoulder(), 2, 13.0, Execution()).slices, (std::vector<std::size_t>{ 0, 13, 26, 39 }));
 }
 
 TEST(ContourSliceFilter, LeavesOutSlicesBeyondTheBone)
 {
-  auto filter = ContourSliceFilter<>::New();
+  auto filter = ContourSliceFilter::New();
   filter->SetInput(Shoulder(3));
   filter->SetMeanSpacing(4.0);
   filter->Update();
@@ -135,7 +124,7 @@ TEST(ContourSliceFilter, LeavesOutSlicesBeyondTheBone)
 
 TEST(ContourSliceFilter, SaysWhatIsWrong)
 {
-  auto filter = ContourSliceFilter<>::New();
+  auto filter = ContourSliceFilter::New();
   filter->SetInput(Shoulder());
   const auto message = [&filter] {
     try

@@ -11,13 +11,6 @@ namespace bone
 {
 namespace
 {
-const ParallelFor Serial = [](std::size_t count, const std::function<void(std::size_t)> & body) {
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    body(i);
-  }
-};
-
 template <typename TFunction>
 std::vector<unsigned char>
 Voxels(const VoxelBox & box, TFunction && inside)
@@ -60,7 +53,7 @@ TEST(LabelField, ContourOfACylinderIsACircleOfTheLabelsArea)
 {
   const VoxelBox   box = Box();
   const auto       flags = Voxels(box, [](const Vector3 & p) { return p.head<2>().norm() < 9.0; });
-  const LabelField field(box, flags, 0.8, Serial);
+  const LabelField field(box, flags, 0.8, Execution());
   int              dropped = 0;
   const auto       pieces = ContoursOfLabel(field, PlaneOf(box), Vector3::UnitX(), Vector3::UnitY(), 0.0, 4.0, dropped);
   ASSERT_EQ(pieces.size(), 1u);
@@ -86,13 +79,13 @@ TEST(LabelField, KeepsPlatesOfOneVoxelGapsAndHoles)
     const bool ring = std::abs((p.head<2>() - Vector2(0, -8)).norm() - 3.5) < 1.5;
     return plate || ring;
   });
-  const LabelField field(box, flags, 0.8, Serial);
+  const LabelField field(box, flags, 0.8, Execution());
   int              dropped = 0;
   const auto       pieces = ContoursOfLabel(field, PlaneOf(box), Vector3::UnitX(), Vector3::UnitY(), 1.5, 4.0, dropped);
   ASSERT_EQ(pieces.size(), 3u);
   std::size_t holes = 0;
   double      area = 0.0;
-  for (const BonePiece & piece : pieces)
+  for (const SectionPiece & piece : pieces)
   {
     holes += piece.holes.size();
     area += SignedArea(piece.outer);
@@ -111,7 +104,7 @@ TEST(LabelField, BetweenSlicesTheContourLiesBetweenTheirs)
 {
   const VoxelBox   box = Box();
   const auto       flags = Voxels(box, [](const Vector3 & p) { return p.head<2>().norm() < 8.0 + 0.4 * p.z(); });
-  const LabelField field(box, flags, 0.8, Serial);
+  const LabelField field(box, flags, 0.8, Execution());
   double           areas[3];
   for (int k = 0; k < 3; ++k)
   {
@@ -125,12 +118,12 @@ TEST(LabelField, BetweenSlicesTheContourLiesBetweenTheirs)
   EXPECT_LT(areas[1], areas[2]);
 }
 
-TEST(BoneSection, DropsWhatExistsOnOneSliceOnly)
+TEST(Section, DropsWhatExistsOnOneSliceOnly)
 {
-  std::vector<BoneSection> sections;
+  std::vector<Section> sections;
   for (int k = 0; k < 8; ++k)
   {
-    BoneSection section{ 1.0 * k, { { Ellipse(10, 10, 60), {}, {}, {} } } };
+    Section section{ 1.0 * k, { { Ellipse(10, 10, 60), {}, {}, {} } } };
     Polygon     hole = Ellipse(2, 2, 20);
     std::reverse(hole.begin(), hole.end());
     if (k == 3)
@@ -151,10 +144,10 @@ TEST(BoneSection, DropsWhatExistsOnOneSliceOnly)
   EXPECT_EQ(sections[5].pieces[0].holes.size(), 1u);
 }
 
-TEST(BoneSection, KeepsAHoleThatIsTheEndOfANotch)
+TEST(Section, KeepsAHoleThatIsTheEndOfANotch)
 {
   // A ring open to one side below, closed on the last slice before it is solid.
-  std::vector<BoneSection> sections;
+  std::vector<Section> sections;
   Polygon                  hole = Ellipse(5, 5, 40);
   std::reverse(hole.begin(), hole.end());
   Polygon open = Ellipse(10, 10, 60);
@@ -166,7 +159,7 @@ TEST(BoneSection, KeepsAHoleThatIsTheEndOfANotch)
   }
   for (int k = 0; k < 8; ++k)
   {
-    BoneSection section{ 1.0 * k, { { k < 3 ? open : Ellipse(10, 10, 60), {}, {}, {} } } };
+    Section section{ 1.0 * k, { { k < 3 ? open : Ellipse(10, 10, 60), {}, {}, {} } } };
     if (k == 3)
     {
       section.pieces[0].holes.push_back(hole);
@@ -178,9 +171,9 @@ TEST(BoneSection, KeepsAHoleThatIsTheEndOfANotch)
   EXPECT_EQ(sections[3].pieces[0].holes.size(), 1u);
 }
 
-TEST(BoneSection, InnerContoursMustLast)
+TEST(Section, InnerContoursMustLast)
 {
-  std::vector<BoneSection> sections;
+  std::vector<Section> sections;
   for (int k = 0; k < 10; ++k)
   {
     sections.push_back({ 1.0 * k, { { Ellipse(20, 10, 60), {}, {}, {} } } });
@@ -194,7 +187,7 @@ TEST(BoneSection, InnerContoursMustLast)
       here.push_back(Ellipse(4, 4, 30, { -10, 0 }));
     }
   }
-  EXPECT_EQ(DropShortLayers(sections, &BonePiece::endosteal, 30.0, 3), 3);
+  EXPECT_EQ(DropShortLayers(sections, &SectionPiece::endosteal, 30.0, 3), 3);
   for (int k = 0; k < 10; ++k)
   {
     const auto & inner = sections[static_cast<std::size_t>(k)].pieces[0].endosteal;

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneMedialAxisFilter.h"
 
+#include "boneMedialAxis.h"
+
 #include "boneContourTestTools.h"
 
 #include <gmock/gmock.h>
@@ -32,10 +34,10 @@ Rectangle(double width, double height, double rounding)
   return loop;
 }
 
-MedialAxisFilter<>::Pointer
+MedialAxisFilter::Pointer
 Updated(ContourStack * stack)
 {
-  auto filter = MedialAxisFilter<>::New();
+  auto filter = MedialAxisFilter::New();
   filter->SetInput(stack);
   filter->Update();
   return filter;
@@ -79,6 +81,15 @@ LargestDistance(const Polygon & from, const Polygon & to)
   return largest;
 }
 
+// Samples 3 mm apart.
+MedialAxisParameters
+Pruned()
+{
+  MedialAxisParameters parameters;
+  parameters.spacing = 3.0;
+  return parameters;
+}
+
 // With nothing but the hairs of the polygon's own corners pruned.
 MedialAxisParameters
 Unpruned()
@@ -98,7 +109,7 @@ TEST(MedialAxis, OfAnEllipseIsItsLongAxisBetweenTheCentresOfCurvature)
   EXPECT_LT(LargestDistance(found, whole), 0.1);
   EXPECT_LT(LargestDistance(whole, found), 0.4);
   // Pruned as by default it is a part of that.
-  EXPECT_LT(LargestDistance(DenseAlong(ComputeMedialAxis({ Ellipse(20, 8, 400) }, {})), whole), 0.1);
+  EXPECT_LT(LargestDistance(DenseAlong(ComputeMedialAxis({ Ellipse(20, 8, 400) }, Pruned())), whole), 0.1);
 }
 
 TEST(MedialAxis, OfARoundedRectangleIsItsMiddleLineAndTheBisectorsOfItsCorners)
@@ -159,13 +170,13 @@ TEST(MedialAxis, OfALShapeHasAParabolaAboutTheInnerCorner)
       EXPECT_NEAR(branch.clearance[i], DistanceTo(branch.points[i], corner), 1e-9);
     }
   }
-  EXPECT_LT(LargestDistance(DenseAlong(ComputeMedialAxis({ corner }, {})), DenseAlong(whole)), 0.3);
+  EXPECT_LT(LargestDistance(DenseAlong(ComputeMedialAxis({ corner }, Pruned())), DenseAlong(whole)), 0.3);
 }
 
 TEST(MedialAxis, RunsOnceAroundEachHole)
 {
   // A ring, and a plate with two holes: three links between two cycles' worth of branches.
-  const auto ring = ComputeMedialAxis({ Ellipse(20, 20, 200), Ellipse(10, 10, 100) }, {});
+  const auto ring = ComputeMedialAxis({ Ellipse(20, 20, 200), Ellipse(10, 10, 100) }, Pruned());
   ASSERT_EQ(ring.size(), 1u);
   EXPECT_EQ(ring[0].points.front(), ring[0].points.back());
   for (std::size_t i = 0; i < ring[0].points.size(); ++i)
@@ -174,7 +185,7 @@ TEST(MedialAxis, RunsOnceAroundEachHole)
     EXPECT_NEAR(ring[0].clearance[i], 5.0, 0.01);
   }
   const auto plate =
-    ComputeMedialAxis({ Rectangle(60, 30, 5), Ellipse(6, 6, 60, { -14, 0 }), Ellipse(6, 6, 60, { 14, 0 }) }, {});
+    ComputeMedialAxis({ Rectangle(60, 30, 5), Ellipse(6, 6, 60, { -14, 0 }), Ellipse(6, 6, 60, { 14, 0 }) }, Pruned());
   std::map<std::pair<double, double>, int> nodes;
   std::size_t                              edges = 0;
   for (const AxisBranch & branch : plate)
@@ -190,7 +201,7 @@ TEST(MedialAxis, RunsOnceAroundEachHole)
 
 TEST(MedialAxis, OfARoundSectionIsAPoint)
 {
-  const auto branches = ComputeMedialAxis({ Ellipse(10.5, 9.5, 80, { 100, -200 }) }, {});
+  const auto branches = ComputeMedialAxis({ Ellipse(10.5, 9.5, 80, { 100, -200 }) }, Pruned());
   ASSERT_EQ(branches.size(), 1u);
   ASSERT_EQ(branches[0].points.size(), 1u);
   EXPECT_NEAR((branches[0].points[0] - Vector2(100, -200)).norm(), 0.0, 0.6);
@@ -248,7 +259,7 @@ TEST(MedialAxisFilter, AddsTheInnermostLayerAndGoesAroundHoles)
 
 TEST(MedialAxisFilter, RefusesBadParameters)
 {
-  auto filter = MedialAxisFilter<>::New();
+  auto filter = MedialAxisFilter::New();
   filter->SetInput(OneSlice({ Ellipse(5, 5, 50) }, { 0 }));
   filter->SetSignificance(0.0);
   EXPECT_THAT(MessageOf([&] { filter->Update(); }), testing::HasSubstr("Significance"));

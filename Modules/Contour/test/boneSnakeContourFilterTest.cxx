@@ -17,7 +17,7 @@ namespace
 using testing::HasSubstr;
 using Filter = SnakeContourFilter<TestCT>;
 
-// A bowed tube: radius 9, cortex from 9 to 6.5, spongy at 250 HU.
+// A bowed tube: radius 9, cortex from 9 to 6.5, trabecular at 250 HU.
 double
 BowedTube(double x, double y, double z)
 {
@@ -325,7 +325,7 @@ TEST(SnakeContourFilter, RefusesBadInputInPlainWords)
   const auto message = [](Filter * filter) { return MessageOf([&] { filter->Update(); }); };
   auto       filter = Filter::New();
   filter->SetInput(MakeImage<TestCT>(grid, BowedTube));
-  EXPECT_THAT(message(filter), HasSubstr("LabelImage or InitialContours"));
+  EXPECT_THAT(message(filter), HasSubstr("'LabelImage' or 'InitialContours'"));
   filter->SetLabelImage(MakeImage<TestLabels>(grid, BowedLabel));
   filter->SetLabel(7);
   EXPECT_THAT(message(filter), HasSubstr("no voxel of label 7"));
@@ -353,6 +353,47 @@ TEST(SnakeContourFilter, RefusesBadInputInPlainWords)
   upright->SetFrame({ 0, 1, 0 }, { 0, 0, 1 });
   drawn->SetInitialContours(StartContour(*upright, Ellipse(5, 5, 50), 0.0));
   EXPECT_THAT(message(drawn), HasSubstr("not parallel"));
+}
+
+template <typename TPixel>
+class SnakeContourFilterTypes : public testing::Test
+{};
+using PixelTypes = testing::Types<unsigned char, short, unsigned short, int, float, double>;
+TYPED_TEST_SUITE(SnakeContourFilterTypes, PixelTypes);
+
+// Values that every type can hold.
+TYPED_TEST(SnakeContourFilterTypes, LabelAndCTOfAnyScalarGiveTheSameContours)
+{
+  const TestGrid grid;
+  const auto     density = [](double x, double y, double z) {
+    return std::clamp(std::round(BowedTube(x, y, z) / 4.0), 0.0, 255.0);
+  };
+  const auto run = [&](auto filter) {
+    filter->SetLabel(3);
+    filter->SetBoneThreshold(40.0);
+    filter->SetMinimumEdgeSlope(10.0);
+    filter->SetMedullaryThreshold(10.0);
+    filter->Update();
+    return filter->GetOutput()->GetSlices();
+  };
+  auto reference = Filter::New();
+  reference->SetInput(MakeImage<TestCT>(grid, density));
+  reference->SetLabelImage(MakeImage<TestLabels>(grid, BowedLabel));
+  const auto expected = run(reference);
+  using Image = itk::Image<TypeParam, 3>;
+  auto filter = SnakeContourFilter<Image, Image>::New();
+  filter->SetInput(MakeImage<Image>(grid, density));
+  filter->SetLabelImage(MakeImage<Image>(grid, BowedLabel));
+  const auto found = run(filter);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+  {
+    ASSERT_EQ(found[k].contours.size(), expected[k].contours.size());
+    for (std::size_t c = 0; c < found[k].contours.size(); ++c)
+    {
+      EXPECT_EQ(found[k].contours[c].points, expected[k].contours[c].points);
+    }
+  }
 }
 } // namespace
 } // namespace bone

@@ -4,6 +4,7 @@
 #ifndef boneDensityEvaluation_h
 #define boneDensityEvaluation_h
 
+#include "boneExecution.h"
 #include "boneTetraLocator.h"
 #include "boneVoxelGrid.h"
 
@@ -72,10 +73,12 @@ struct DensityComparison
 using VoxelReference = std::function<bool(std::size_t offset, double & value)>;
 
 /** Compares the model with the image `reference` on a grid; every voxel centre of the grid is asked for. The result
- * does not depend on the number of threads (ITK's global default is used). Throws std::invalid_argument as
- * DensityRaster. */
+ * does not depend on the number of threads. Throws std::invalid_argument as DensityRaster. */
 DensityComparison
-CompareDensity(const MeshArrays & mesh, const VoxelGrid & grid, const VoxelReference & reference);
+CompareDensity(const MeshArrays &     mesh,
+               const VoxelGrid &      grid,
+               const VoxelReference & reference,
+               const Execution &      execution = {});
 } // namespace bone
 
 #endif

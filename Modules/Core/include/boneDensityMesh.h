@@ -45,8 +45,8 @@ public:
   MeshArrays
   GetArrays() const;
 
-  /** All but the points, without a copy (`points` is empty here). */
-  const MeshArrays &
+  /** All but the points, without a copy. */
+  const MeshCells &
   GetCells() const
   {
     return m_Cells;
@@ -87,7 +87,7 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  MeshArrays m_Cells;
+  MeshCells m_Cells;
 };
 } // namespace bone
 

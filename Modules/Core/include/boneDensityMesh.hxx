@@ -60,9 +60,7 @@ DensityMesh<TCoordinate>::SetArrays(MeshArrays arrays)
     }
   }
   this->SetPoints(container);
-  arrays.points.clear();
-  arrays.points.shrink_to_fit();
-  m_Cells = std::move(arrays);
+  m_Cells = std::move(static_cast<MeshCells &>(arrays));
   this->Modified();
 }
 
@@ -70,7 +68,7 @@ template <typename TCoordinate>
 MeshArrays
 DensityMesh<TCoordinate>::GetArrays() const
 {
-  MeshArrays arrays = m_Cells;
+  MeshArrays arrays{ m_Cells, {} };
   const auto np = this->GetNumberOfPoints();
   arrays.points.resize(np);
   if (np > 0)
@@ -89,7 +87,7 @@ void
 DensityMesh<TCoordinate>::Initialize()
 {
   Superclass::Initialize();
-  m_Cells = MeshArrays();
+  m_Cells = MeshCells();
 }
 
 template <typename TCoordinate>

@@ -10,14 +10,12 @@
 
 namespace bone
 {
-/** \struct MeshArrays
- * \brief A layered tetrahedral density mesh as plain arrays: what every kernel works on.
+/** \struct MeshCells
+ * \brief A layered tetrahedral density mesh without the positions of its points, as plain arrays.
  *
- * Index p runs over points, t over tetrahedra. Arrays of attributes are either empty or of full length.
- * \ref DensityMesh is the same content as an itk::DataObject. */
-struct MeshArrays
+ * Index p runs over points, t over tetrahedra. Arrays of attributes are either empty or of full length. */
+struct MeshCells
 {
-  std::vector<Vector3> points;     ///< #p, mm
   std::vector<Id4>     tetrahedra; ///< #t, positive orientation: (b-a) x (c-a) . (d-a) > 0
   std::vector<Id4>     neighbors;  ///< #t, neighbour i lies across the face opposite vertex i, -1 at the boundary
   std::vector<int>     layer;      ///< #p, 0 on the exterior contour, counting inward
@@ -36,6 +34,15 @@ struct MeshArrays
   {
     return maximumDegree >= 0;
   }
+};
+
+/** \struct MeshArrays
+ * \brief A layered tetrahedral density mesh as plain arrays: what kernels work on.
+ *
+ * \ref DensityMesh is the same content as an itk::DataObject. */
+struct MeshArrays : MeshCells
+{
+  std::vector<Vector3> points; ///< #p, mm
 };
 
 /** Face neighbours from the tetrahedra alone. A face met by more than two tetrahedra is left as -1 on all of them (the

@@ -5,8 +5,6 @@
 
 #include "boneDensityRaster.h"
 
-#include <itkMultiThreaderBase.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -179,15 +177,15 @@ MeasureRegions(const MeshArrays & mesh)
 }
 
 DensityComparison
-CompareDensity(const MeshArrays & mesh, const VoxelGrid & grid, const VoxelReference & reference)
+CompareDensity(const MeshArrays &     mesh,
+               const VoxelGrid &      grid,
+               const VoxelReference & reference,
+               const Execution &      execution)
 {
   const DensityRaster    raster(mesh, grid);
   std::vector<SliceSums> slices(grid.size[2]);
-  itk::MultiThreaderBase::New()->ParallelizeArray(
-    0,
-    slices.size(),
-    [&](itk::SizeValueType k) { slices[k] = CompareSlice(raster, grid, static_cast<int>(k), reference); },
-    nullptr);
+  execution.For(slices.size(),
+                [&](std::size_t k) { slices[k] = CompareSlice(raster, grid, static_cast<int>(k), reference); });
   DensityComparison  error;
   SliceSums          total;
   std::vector<float> values;

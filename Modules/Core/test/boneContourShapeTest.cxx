@@ -41,7 +41,7 @@ Cone()
     ContourSlice slice;
     slice.origin = Vector3(0, 0, z);
     slice.contours = { Circle(slice.origin, 10 + 0.5 * z, Region::Cortical),
-                       Circle(slice.origin, 6, Region::Spongy),
+                       Circle(slice.origin, 6, Region::Trabecular),
                        Circle(slice.origin, 2, Region::Outside, true) };
     slices.push_back(slice);
   }

@@ -4,7 +4,6 @@
 #include "boneDensityMesh.h"
 
 #include "boneDensityHierarchy.h"
-#include "boneHierarchyLocator.h"
 #include "boneTestBodies.h"
 
 #include <gmock/gmock.h>
@@ -82,7 +81,6 @@ TYPED_TEST(DensityMeshTest, HoldsWhatItWasGiven)
   EXPECT_EQ(back.coefficients, arrays.coefficients);
   EXPECT_EQ(back.maximumDegree, 1);
   EXPECT_EQ(back.quantity, DensityQuantity::HounsfieldUnit);
-  EXPECT_TRUE(mesh->GetCells().points.empty());
 }
 
 TYPED_TEST(DensityMeshTest, ComputesMissingNeighbours)
@@ -200,37 +198,5 @@ TEST(DensityHierarchy, PicksTheLevelThatIsJustGoodEnough)
   view.parallel = true;
   geometry->SetView(view);
   EXPECT_EQ(hierarchy->PickByPixelSize(*geometry), 2u);
-}
-
-TEST(HierarchyLocator, ACellOnOneLevelGivesAStartOnEveryOther)
-{
-  const std::vector<MeshArrays> levels = { test::MakeBall(4, { 2, 2 }, 10, 0.1, 1),
-                                           test::MakeBall(3, { 1, 2 }, 10, 0.1, 2),
-                                           test::MakeBall(2, { 1, 1 }, 10, 0.1, 3) };
-  const HierarchyLocator        locator(levels);
-  for (const Vector3 & x : { Vector3(1, 2, 3), Vector3(-4, 0.5, 2), Vector3(0, 0, 0.1), Vector3(20, 0, 0) })
-  {
-    for (std::size_t from = 0; from < 3; ++from)
-    {
-      const IdType cell = locator.GetLocator(from).FindNearest(x).cell;
-      EXPECT_EQ(locator.StartingCell(from, cell, from), cell);
-      for (std::size_t to = 0; to < 3; ++to)
-      {
-        const auto expected = locator.GetLocator(to).FindNearest(x);
-        const auto found = locator.FindNearest(to, x, from, cell);
-        EXPECT_EQ(found.cell, expected.cell);
-        EXPECT_EQ(found.distance, expected.distance);
-      }
-    }
-  }
-  // One step away the start holds the cell's centroid.
-  for (IdType cell = 0; cell < 50; ++cell)
-  {
-    const Id4 &   t = levels[0].tetrahedra[cell * 7];
-    const auto &  p = levels[0].points;
-    const Vector3 centroid = (p[t[0]] + p[t[1]] + p[t[2]] + p[t[3]]) / 4;
-    EXPECT_EQ(locator.StartingCell(0, cell * 7, 1), locator.GetLocator(1).FindNearest(centroid).cell);
-  }
-  EXPECT_THROW(HierarchyLocator({ MeshArrays() }), std::invalid_argument);
 }
 } // namespace bone

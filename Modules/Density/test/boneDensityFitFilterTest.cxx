@@ -190,7 +190,7 @@ TEST(DensityFitFilter, ErrorFallsWithTheDegreeDownToThatOfLinearInterpolation)
   {
     auto filter = MakeFit(mesh, image.GetPointer(), degree);
     filter->Update();
-    const MeshArrays & fitted = filter->GetOutput()->GetCells();
+    const MeshCells & fitted = filter->GetOutput()->GetCells();
     double             worst = 0;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     {

@@ -181,7 +181,7 @@ ToText(const BuildReport & report)
   Row(os, report, "valid", [](const LevelReport & l) { return std::string(l.valid ? "yes" : "NO"); });
   Row(os, report, "volume (mm^3)", [](const LevelReport & l) { return Fixed(l.volume, 0); });
   Row(os, report, "  cortical (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Cortical); });
-  Row(os, report, "  spongy (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Spongy); });
+  Row(os, report, "  trabecular (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Trabecular); });
   Row(os, report, "  medullary (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Medullary); });
   Row(os, report, "dihedral angle, least (deg)", [](const LevelReport & l) {
     return Fixed(l.dihedral.minimum * Degrees, 1);

@@ -62,11 +62,11 @@ MakeStack()
   auto hole = Circle(14, 0, 1, 7);
   std::reverse(hole.begin(), hole.end());
   const double first = slices[0].origin.dot(stack->GetNormal()), last = slices[2].origin.dot(stack->GetNormal());
-  auto         axis = MakeContour(stack, first, { { -1, 0 }, { 0, 0.5 }, { 1, 0 } }, 2, 3, Spongy);
+  auto         axis = MakeContour(stack, first, { { -1, 0 }, { 0, 0.5 }, { 1, 0 } }, 2, 3, Trabecular);
   axis.axis = true;
   axis.clearance = { 9.0, 9.5, 9.25 };
   slices[0].contours = { MakeContour(stack, first, Circle(0, 0, 20, 30), 0, 0, Cortical),
-                         MakeContour(stack, first, Circle(0, 0, 10, 20), 1, 1, Spongy),
+                         MakeContour(stack, first, Circle(0, 0, 10, 20), 1, 1, Trabecular),
                          MakeContour(stack, first, hole, 0, 2, Outside),
                          axis };
   auto point = MakeContour(stack, last, { { 0, 0 } }, 1, 7, Cortical);

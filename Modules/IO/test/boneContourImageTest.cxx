@@ -26,7 +26,7 @@ Circle(const ContourStack * stack, double radius, double height, bool hole = fal
   return points;
 }
 
-// Three slices 2 mm apart, in a frame turned by 0.3 about z: a ring of cortex with spongy bone; on the last with a
+// Three slices 2 mm apart, in a frame turned by 0.3 about z: a ring of cortex with trabecular bone; on the last with a
 // hole.
 ContourStack::Pointer
 MakeStack()
@@ -42,7 +42,7 @@ MakeStack()
     inner.points = Circle(stack, 8, 2.0 * k, k == 2);
     inner.id = 1;
     inner.layer = k == 2 ? 0 : 1;
-    inner.region = k == 2 ? Outside : Spongy;
+    inner.region = k == 2 ? Outside : Trabecular;
     slices[k].contours = { outer, inner };
   }
   stack->SetSlices(slices);
@@ -84,7 +84,7 @@ Expected(const LabelImage::PointType & p)
     return 0;
   }
   const double r = std::hypot(p[0], p[1]);
-  return r > 12 ? 0 : r > 8 ? Cortical : k == 2 ? Outside : Spongy;
+  return r > 12 ? 0 : r > 8 ? Cortical : k == 2 ? Outside : Trabecular;
 }
 
 int
@@ -148,7 +148,7 @@ TEST(ContourImage, LabelsTraceToContoursThatGiveTheSameLabels)
   {
     ASSERT_EQ(again->GetPixel(it.GetIndex()) != 0, it.Get() != 0) << it.GetIndex();
   }
-  EXPECT_GT(TraceLabels(labels, Spongy, 2)->GetNumberOfContours(), 0u);
+  EXPECT_GT(TraceLabels(labels, Trabecular, 2)->GetNumberOfContours(), 0u);
   EXPECT_THROW(TraceLabels(labels, 9, 2), itk::ExceptionObject);
 }
 

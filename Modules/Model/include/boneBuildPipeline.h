@@ -38,10 +38,10 @@ class BuildPipeline
 {
 public:
   using MeshType = DensityMesh<double>;
-  using SnakeType = SnakeContourFilter<CTImage, ContourStack>;
-  using SlicesType = ContourSliceFilter<ContourStack>;
-  using ResampleType = ContourResampleFilter<ContourStack>;
-  using MedialAxisType = MedialAxisFilter<ContourStack>;
+  using SnakeType = SnakeContourFilter<CTImage>;
+  using SlicesType = ContourSliceFilter;
+  using ResampleType = ContourResampleFilter;
+  using MedialAxisType = MedialAxisFilter;
   using TilingType = ContourTilingMeshSource<MeshType>;
   using QualityType = MeshQualityFilter<MeshType>;
   using FitType = DensityFitFilter<CTImage, MeshType>;

@@ -57,8 +57,8 @@ AdjustResolution(BuildPipeline &                                         pipelin
  * the best. `tried` is told of each tiling. Returns the best number; throws itk::ExceptionObject where no contours can
  * be made or tiled. */
 IdType
-AdjustSamples(ContourResampleFilter<> &           resample,
-              MedialAxisFilter<> &                axes,
+AdjustSamples(ContourResampleFilter &           resample,
+              MedialAxisFilter &                axes,
               IdType                              tetrahedra,
               const std::function<void(IdType)> & tried);
 } // namespace bone

@@ -171,8 +171,8 @@ AdjustResolution(BuildPipeline &                                         pipelin
 }
 
 IdType
-AdjustSamples(ContourResampleFilter<> &           resample,
-              MedialAxisFilter<> &                axes,
+AdjustSamples(ContourResampleFilter &           resample,
+              MedialAxisFilter &                axes,
               IdType                              tetrahedra,
               const std::function<void(IdType)> & tried)
 {

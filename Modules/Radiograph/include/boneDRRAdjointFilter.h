@@ -8,6 +8,7 @@
 #include "boneMeshDerivatives.h"
 #include "boneMeshFilter.h"
 
+#include <itkImage.h>
 #include <itkSimpleDataObjectDecorator.h>
 
 namespace bone

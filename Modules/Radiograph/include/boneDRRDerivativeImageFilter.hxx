@@ -48,7 +48,7 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vecto
                                                                 const std::vector<float *> &            integrals)
 {
   const std::vector<Vector3> points = this->GetVerifiedPoints();
-  const MeshArrays &         cells = this->GetInput()->GetCells();
+  const MeshCells &          cells = this->GetInput()->GetCells();
   for (std::size_t m = 0; m < m_Modes.shape.size(); ++m)
   {
     const auto & mode = m_Modes.shape[m];

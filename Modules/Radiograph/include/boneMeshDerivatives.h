@@ -17,7 +17,7 @@ struct RadiographModes
   Vector3 poseCentre{ Vector3::Zero() };
   /** Displacements of the mesh's points, mm per unit of each mode; the density moves with the tetrahedra. */
   std::vector<std::vector<Vector3>> shape;
-  /** Changes of MeshArrays::coefficients, laid out like these, per unit of each mode. */
+  /** Changes of MeshCells::coefficients, laid out like these, per unit of each mode. */
   std::vector<std::vector<double>> density;
 
   std::size_t
@@ -37,7 +37,7 @@ struct RadiographModes
  */
 void
 ProjectMeshDerivatives(const std::vector<Vector3> &     points,
-                       const MeshArrays &               cells,
+                       const MeshCells &                cells,
                        const XRayGeometry::View &       view,
                        const MeshRadiographParameters & parameters,
                        const RadiographModes &          modes,
@@ -46,12 +46,12 @@ ProjectMeshDerivatives(const std::vector<Vector3> &     points,
 
 /** \brief The adjoint: for f = sum over the pixels of image * ProjectMesh(...), the derivatives of f.
  *
- * `coefficients` receives df / dc for each of MeshArrays::coefficients (0 for cells not selected; the projection being
+ * `coefficients` receives df / dc for each of MeshCells::coefficients (0 for cells not selected; the projection being
  * linear, this is the transpose of the matrix from coefficients to pixels), `positions` (#points, or null) df / dx for
  * each point, per mm. The result does not depend on the number of threads. */
 void
 BackprojectToMesh(const std::vector<Vector3> &     points,
-                  const MeshArrays &               cells,
+                  const MeshCells &                cells,
                   const XRayGeometry::View &       view,
                   const MeshRadiographParameters & parameters,
                   const Execution &                execution,

@@ -22,7 +22,7 @@ MakeMeshRadiographParameters(int minimumRegion, int maximumRegion, HUToAttenuati
  * empty where it can. */
 std::string
 FindObstacle(const std::vector<Vector3> &     points,
-             const MeshArrays &               cells,
+             const MeshCells &                cells,
              const MeshRadiographParameters & parameters,
              HUToAttenuation                  conversion);
 
@@ -47,7 +47,7 @@ FindObstacle(const std::vector<Vector3> &     points,
  * of the image's largest value. For several calls with one mesh make a ProjectionModel. */
 void
 ProjectMesh(const std::vector<Vector3> &            points,
-            const MeshArrays &                      cells,
+            const MeshCells &                       cells,
             const std::vector<XRayGeometry::View> & views,
             const MeshRadiographParameters &        parameters,
             const Execution &                       execution,
@@ -55,7 +55,7 @@ ProjectMesh(const std::vector<Vector3> &            points,
 
 inline void
 ProjectMesh(const std::vector<Vector3> &     points,
-            const MeshArrays &               cells,
+            const MeshCells &                cells,
             const XRayGeometry::View &       view,
             const MeshRadiographParameters & parameters,
             const Execution &                execution,
@@ -72,7 +72,7 @@ ProjectMesh(const std::vector<Vector3> &     points,
  * tetrahedra met on each ray, of any region. */
 void
 WalkMesh(const std::vector<Vector3> &     points,
-         const MeshArrays &               cells,
+         const MeshCells &                cells,
          const XRayGeometry::View &       view,
          const MeshRadiographParameters & parameters,
          const Execution &                execution,

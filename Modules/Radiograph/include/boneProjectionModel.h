@@ -24,7 +24,7 @@ public:
    * must outlive the model: see \ref MeshRadiograph. Without `keep` only the blocks are formed, and filled for each
    * radiograph anew: less work where there is but one. */
   ProjectionModel(const std::vector<Vector3> &     points,
-                  const MeshArrays &               cells,
+                  const MeshCells &                cells,
                   const MeshRadiographParameters & parameters,
                   const Execution &                execution,
                   bool                             keep = true);
@@ -70,7 +70,7 @@ public:
   {
     return m_Points;
   }
-  const MeshArrays &
+  const MeshCells &
   Cells() const
   {
     return m_Cells;
@@ -88,7 +88,7 @@ private:
   SetBox(Blocks & blocks, std::size_t block) const;
 
   const std::vector<Vector3> & m_Points;
-  const MeshArrays &           m_Cells;
+  const MeshCells &            m_Cells;
   MeshRadiographParameters     m_Parameters;
   std::vector<Blocks>          m_Blocks;
 };

@@ -119,7 +119,7 @@ class DerivativeProjector
 {
 public:
   DerivativeProjector(const std::vector<Vector3> &     points,
-                      const MeshArrays &               cells,
+                      const MeshCells &                cells,
                       const XRayGeometry::View &       view,
                       const MeshRadiographParameters & parameters,
                       const RadiographModes &          modes)
@@ -164,7 +164,7 @@ private:
   WriteRow(int row, std::pair<int, int> columns, const float * sums, const std::vector<float *> & images) const;
 
   const std::vector<Vector3> &     m_Points;
-  const MeshArrays &               m_Cells;
+  const MeshCells &                m_Cells;
   const MeshRadiographParameters & m_Parameters;
   const RadiographModes &          m_Modes;
   ProjectedCells                   m_Projected;
@@ -347,7 +347,7 @@ class Backprojector
 {
 public:
   Backprojector(const std::vector<Vector3> &     points,
-                const MeshArrays &               cells,
+                const MeshCells &                cells,
                 const XRayGeometry::View &       view,
                 const MeshRadiographParameters & parameters,
                 bool                             withPositions)
@@ -370,7 +370,7 @@ private:
   AddGeneral(std::size_t t, double * coefficients);
 
   const std::vector<Vector3> &     m_Points;
-  const MeshArrays &               m_Cells;
+  const MeshCells &                m_Cells;
   const MeshRadiographParameters & m_Parameters;
   ProjectedCells                   m_Projected;
   std::vector<float>               m_Weights; ///< the image times the rays' step length
@@ -462,7 +462,7 @@ Backprojector::GatherPositions(Vector3 * gradient) const
 
 void
 ProjectMeshDerivatives(const std::vector<Vector3> &     points,
-                       const MeshArrays &               cells,
+                       const MeshCells &                cells,
                        const XRayGeometry::View &       view,
                        const MeshRadiographParameters & parameters,
                        const RadiographModes &          modes,
@@ -474,7 +474,7 @@ ProjectMeshDerivatives(const std::vector<Vector3> &     points,
 
 void
 BackprojectToMesh(const std::vector<Vector3> &     points,
-                  const MeshArrays &               cells,
+                  const MeshCells &                cells,
                   const XRayGeometry::View &       view,
                   const MeshRadiographParameters & parameters,
                   const Execution &                execution,

@@ -31,7 +31,7 @@ MakeMeshRadiographParameters(int minimumRegion, int maximumRegion, HUToAttenuati
 
 std::string
 FindObstacle(const std::vector<Vector3> &     points,
-             const MeshArrays &               cells,
+             const MeshCells &                cells,
              const MeshRadiographParameters & parameters,
              HUToAttenuation                  conversion)
 {
@@ -477,7 +477,7 @@ ProjectMesh(const ProjectionModel &                 model,
 
 void
 ProjectMesh(const std::vector<Vector3> &            points,
-            const MeshArrays &                      cells,
+            const MeshCells &                       cells,
             const std::vector<XRayGeometry::View> & views,
             const MeshRadiographParameters &        parameters,
             const Execution &                       execution,

@@ -38,7 +38,7 @@ class Walker
 {
 public:
   Walker(const std::vector<Vector3> &     points,
-         const MeshArrays &               cells,
+         const MeshCells &                cells,
          const XRayGeometry::View &       view,
          const MeshRadiographParameters & parameters)
     : m_Points(points)
@@ -67,7 +67,7 @@ private:
   DrawRow(int row, float * image, std::int32_t * cellsPassed) const;
 
   const std::vector<Vector3> & m_Points;
-  const MeshArrays &           m_Cells;
+  const MeshCells &            m_Cells;
   CellDensity                  m_Density;
   RayFrame                     m_Frame;
   std::vector<CellLines>       m_Lines;
@@ -269,7 +269,7 @@ Walker::Run(const Execution & execution, float * image, std::int32_t * cellsPass
 
 void
 WalkMesh(const std::vector<Vector3> &     points,
-         const MeshArrays &               cells,
+         const MeshCells &                cells,
          const XRayGeometry::View &       view,
          const MeshRadiographParameters & parameters,
          const Execution &                execution,

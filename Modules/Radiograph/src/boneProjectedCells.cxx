@@ -11,7 +11,7 @@
 namespace bone
 {
 ProjectedCells::ProjectedCells(const std::vector<Vector3> &     points,
-                               const MeshArrays &               cells,
+                               const MeshCells &                cells,
                                const XRayGeometry::View &       view,
                                const MeshRadiographParameters & parameters,
                                int                              bands)

@@ -31,7 +31,7 @@ class ProjectedCells
 {
 public:
   ProjectedCells(const std::vector<Vector3> &     points,
-                 const MeshArrays &               cells,
+                 const MeshCells &                cells,
                  const XRayGeometry::View &       view,
                  const MeshRadiographParameters & parameters,
                  int                              bands);
@@ -123,7 +123,7 @@ private:
   ColumnsOfRow(const CellLines & lines, int row) const;
 
   const std::vector<Vector3> &     m_Points;
-  const MeshArrays &               m_Cells;
+  const MeshCells &                m_Cells;
   const MeshRadiographParameters & m_Parameters;
   CellDensity                      m_Density;
   RayFrame                         m_Frame;

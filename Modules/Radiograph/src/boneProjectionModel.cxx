@@ -29,7 +29,7 @@ Spread(std::uint32_t x)
 /** The tetrahedra along a Morton curve through a grid that has about as many cubes as there are tetrahedra, so that
  * those that follow each other are near each other; in a cube by their numbers. */
 std::vector<std::int32_t>
-SortBySpace(const std::vector<Vector3> & points, const MeshArrays & cells, const Execution & execution)
+SortBySpace(const std::vector<Vector3> & points, const MeshCells & cells, const Execution & execution)
 {
   const std::size_t count = cells.tetrahedra.size();
   Vector3           low = Vector3::Constant(std::numeric_limits<double>::max()), high = -low;
@@ -74,7 +74,7 @@ ProjectionModel::Blocks::CoefficientsSize() const
 }
 
 ProjectionModel::ProjectionModel(const std::vector<Vector3> &     points,
-                                 const MeshArrays &               cells,
+                                 const MeshCells &                cells,
                                  const MeshRadiographParameters & parameters,
                                  const Execution &                execution,
                                  bool                             keep)

@@ -36,7 +36,7 @@ RestrictToRays(const RayFrame & frame, const AffineBarycentric & mu);
 class CellDensity
 {
 public:
-  CellDensity(const MeshArrays & cells, const MeshRadiographParameters & parameters)
+  CellDensity(const MeshCells & cells, const MeshRadiographParameters & parameters)
     : m_Cells(cells)
     , m_Parameters(parameters)
     , m_Stride(BernsteinCount(cells.maximumDegree))
@@ -73,7 +73,7 @@ public:
   }
 
 private:
-  const MeshArrays &               m_Cells;
+  const MeshCells &                m_Cells;
   const MeshRadiographParameters & m_Parameters;
   std::size_t                      m_Stride;
 };

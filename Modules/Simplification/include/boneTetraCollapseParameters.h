@@ -20,13 +20,13 @@ namespace bone
   value(std::vector<double>, maximumSurfaceDistances, MaximumSurfaceDistances, std::vector<double>(), \
     ParameterRange::NotNegativeOrInfinite(), "mm", "max-surface-distance", \
     "Bound on the distance of boundary and interfaces of each coarser level to the first, and back") \
-  value(double, maximumVolumeChange, MaximumVolumeChange, 0.03, ParameterRange::NotNegativeOrInfinite(), "", \
-    "max-volume-change", "Bound on the change of each region's volume, as a share of it") \
+  value(double, maximumVolumeChange, MaximumVolumeChange, 0.03, ParameterRange::NotNegativeOrInfinite(), "share", \
+    "max-volume-change", "Bound on the change of each region's volume") \
   value(double, minimumDihedralAngle, MinimumDihedralAngle, 0.05235987755982988, ParameterRange::Between(0.0, 1.23), \
     "rad", "min-angle", "No dihedral angle falls below this and what was there") \
   value(double, minimumCorticalDihedralAngle, MinimumCorticalDihedralAngle, 0.02617993877991494, \
     ParameterRange::Between(0.0, 1.23), "rad", "min-cortical-angle", \
-    "The same in the cortical layer, which may be thin") \
+    "The same in the cortical layer, which may be thin; half of --min-angle where that alone is given") \
   value(int, maximumDegree, MaximumDegree, -1, ParameterRange::Between(-1, MaximumBernsteinDegree), "", "max-degree", \
     "Degree to which polynomials may be raised to keep to --max-density-error; -1: not raised") \
   value(double, densityWeight, DensityWeight, 3.0, ParameterRange::NotNegative(), "", "density-weight", \
