@@ -6,6 +6,7 @@
 
 #include "boneContourExtraction.h"
 #include "boneContourFilter.h"
+#include "boneLabelValue.h"
 
 #include <itkImage.h>
 
@@ -111,12 +112,6 @@ private:
   PlaneSource
   MakePlaneSource(const SliceFrame & frame, const std::array<unsigned int, 3> & axes) const;
 
-  bool
-  HasLabel(const typename TLabelImage::PixelType & value) const
-  {
-    const auto number = static_cast<double>(value);
-    return m_Parameters.label != 0 ? number == m_Parameters.label : number < 0.0 || number > 0.0;
-  }
   /** The label's bounding box; sets the heights of its lowest and highest voxel. */
   typename TLabelImage::RegionType
   FindLabel(const SliceFrame & frame, LabelVoxels & voxels) const;

@@ -153,7 +153,7 @@ SnakeContourFilter<TInputImage, TLabelImage>::FindLabel(const SliceFrame & frame
   using Iterator = itk::ImageRegionConstIteratorWithIndex<LabelImageType>;
   for (Iterator it(labels, labels->GetBufferedRegion()); !it.IsAtEnd(); ++it)
   {
-    if (!this->HasLabel(it.Get()))
+    if (!HasLabel(it.Get(), m_Parameters.label))
     {
       continue;
     }
@@ -209,7 +209,7 @@ SnakeContourFilter<TInputImage, TLabelImage>::CropLabel(const SliceFrame & frame
   voxels.inside.reserve(box.Count());
   for (itk::ImageRegionConstIteratorWithIndex<LabelImageType> it(labels, crop); !it.IsAtEnd(); ++it)
   {
-    voxels.inside.push_back(this->HasLabel(it.Get()));
+    voxels.inside.push_back(HasLabel(it.Get(), m_Parameters.label));
   }
   return voxels;
 }

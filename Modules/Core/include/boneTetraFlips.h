@@ -4,6 +4,8 @@
 #ifndef boneTetraFlips_h
 #define boneTetraFlips_h
 
+#include "boneExecution.h"
+#include "boneParameters.h"
 #include "boneTetraComplex.h"
 
 #include <functional>
@@ -73,11 +75,20 @@ enum class FlipCellCount : int
   Same
 };
 
+// clang-format off
+#define BONE_TETRA_SWAP_PARAMETERS(value, flag) \
+  value(double, targetAngle, TargetAngle, 0.35, ParameterRange::Above(0.0, 1.23), "rad", "target-angle", \
+    "Cells whose smallest dihedral angle is below are swapped") \
+  value(int, maximumPasses, MaximumPasses, 6, ParameterRange::AtLeast(0), "", "passes", \
+    "Passes over those cells; a pass without a flip ends it")
+// clang-format on
+
+/** Parameters of TetraSwapFilter. */
+BONE_PARAMETER_STRUCT(TetraSwapParameters, BONE_TETRA_SWAP_PARAMETERS);
+
 /** Parameters of \ref ImproveByFlips. */
-struct FlipParameters
+struct FlipParameters : TetraSwapParameters
 {
-  double        targetAngle{ 0.35 }; ///< rad; cells whose smallest dihedral angle is below are looked at
-  int           maximumPasses{ 6 };  ///< each pass goes over all such cells
   FlipCellCount cellCount{ FlipCellCount::Any };
   IdType        minimumCells{ 0 }; ///< no flip makes fewer cells than this
 };
@@ -136,7 +147,8 @@ FlipReport
 ImproveByFlips(TetraComplex &         complex,
                const FlipParameters & parameters,
                const FlipObserver &   observer = {},
-               FlipMemory *           memory = nullptr);
+               FlipMemory *           memory = nullptr,
+               const Execution &      execution = {});
 } // namespace bone
 
 #endif

@@ -616,7 +616,8 @@ FlipReport
 ImproveByFlips(TetraComplex &         complex,
                const FlipParameters & parameters,
                const FlipObserver &   observer,
-               FlipMemory *           memory)
+               FlipMemory *           memory,
+               const Execution &      execution)
 {
   FlipReport   report;
   FlipMemory   own;
@@ -638,8 +639,11 @@ ImproveByFlips(TetraComplex &         complex,
     }
     std::sort(worst.begin(), worst.end());
     const std::size_t before = report.done;
+    std::size_t       seen = 0;
     for (const auto & candidate : worst)
     {
+      execution.Report((pass + static_cast<double>(++seen) / static_cast<double>(worst.size())) /
+                       parameters.maximumPasses);
       if (complex.IsAlive(candidate.second) && CellCosine(complex, candidate.second) > limit)
       {
         known.Reserve(complex);

@@ -4,10 +4,12 @@
 #ifndef boneLabelOutline_h
 #define boneLabelOutline_h
 
+#include "boneLabelValue.h"
 #include "boneTypes.h"
 
-#include <itkImage.h>
+#include <itkImageBase.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace bone
@@ -35,10 +37,24 @@ struct LabelOutline
   double             spacing{ 0.0 }; ///< cube root of a voxel's volume, mm
 };
 
-/** The outline of a label. Where it leaves the image there is none.
- * \param label  0: of all labels but 0. */
+/** The outline of a label; where it leaves the image there is none. `inside` says which voxels of the image's buffered
+ * region, the first axis fastest, have the label. */
 LabelOutline
-FindOutline(const itk::Image<short, 3> & labels, short label);
+FindOutline(const itk::ImageBase<3> & image, const std::vector<unsigned char> & inside);
+
+/** The same for a label map of any scalar; label 0 stands for every value but 0. */
+template <typename TImage>
+LabelOutline
+FindOutline(const TImage & labels, int label)
+{
+  const std::size_t          count = labels.GetBufferedRegion().GetNumberOfPixels();
+  std::vector<unsigned char> inside(count);
+  std::transform(labels.GetBufferPointer(),
+                 labels.GetBufferPointer() + count,
+                 inside.begin(),
+                 [label](const auto & value) -> unsigned char { return HasLabel(value, label); });
+  return FindOutline(static_cast<const itk::ImageBase<3> &>(labels), inside);
+}
 } // namespace bone
 
 #endif

@@ -7,16 +7,16 @@
 #include "boneMeshImprovement.h"
 #include "boneMeshToMeshFilter.h"
 
-#include <cmath>
+#include <itkImage.h>
 
 namespace bone
 {
 /** \class MeshQualityFilter
- * \brief Makes a tiled mesh fit for computing: smoothing, swaps and optimisation in turn (paper 2.7).
+ * \brief Makes a tiled mesh fit for computing by rounds of smoothing, swaps and optimisation (paper 2.7).
  *
  * Boundary and interfaces are faired by at most DistanceBound; then each round smooths inner points, adds and removes
- * points inside regions until cells grow from the surfaces inward by Gradation, swaps faces and edges, and looks after
- * the worst cells: flips of surface edges, edge collapses, and a pattern search for their points. Each of these raises
+ * points inside regions until cells grow from the surfaces inward by Gradation, swaps faces and edges, and improves the
+ * worst cells: flips of surface edges, edge collapses, and a pattern search for their points. Each of these raises
  * the smallest dihedral angle of what it touches. In the end boundary and interfaces are fitted to the first ones, with
  * a resistance to bending, and regions get their volumes back. A valid mesh stays valid, flat cuts flat, layers what
  * they are.
@@ -27,16 +27,17 @@ namespace bone
  * surfaces are fitted, as contours that the mesh has left out may be that far from it.
  *
  * Optional input "Contours": what the mesh was tiled from, best before slices were left out and contours resampled.
- * Surfaces are then fitted to the contours (\ref FitSurfaces), and their edges flipped where that brings contours
- * closer or makes the surface turn less (\ref FlipToContours).
+ * Surfaces are then fitted to the contours, and their edges flipped where that brings contours closer or lowers the
+ * dihedral deviation.
  *
  * Optional input "LabelImage", on any grid: the bone, as voxels. The boundary is fitted to the outline of `Label` too,
- * most of all between slices, where contours do not know it; and where it passes the centre of a voxel on the wrong
- * side by less than a sixteenth of a voxel, it is put on the right one (\ref SideKeeper).
+ * most of all between slices, where there are no contours; where it passes the centre of a voxel on the wrong side by
+ * less than a sixteenth of a voxel, it is moved to the right one.
  *
  * The numbers of cells and points change. A point that was added within region r has layer r, as a medial axis there,
- * and the slice of a neighbour. Sequential: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
-template <typename TMesh = DensityMesh<double>>
+ * and the slice of a neighbour. The result does not depend on the number of threads. Parameters: \ref
+ * MeshQualityParameters. Errors: \ref MeshToMeshFilter. */
+template <typename TMesh = DensityMesh<double>, typename TLabelImage = itk::Image<short, 3>>
 class MeshQualityFilter : public MeshToMeshFilter<TMesh>
 {
 public:
@@ -48,48 +49,16 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(MeshQualityFilter, MeshToMeshFilter);
 
-  void
-  SetContours(const ContourStack * contours);
-  const ContourStack *
-  GetContours() const;
+  using LabelImageType = TLabelImage;
+  static_assert(TLabelImage::ImageDimension == 3, "MeshQualityFilter needs a three-dimensional label image");
 
-  using LabelImageType = itk::Image<short, 3>;
-  void
-  SetLabelImage(const LabelImageType * labels);
-  const LabelImageType *
-  GetLabelImage() const;
-  /** The bone's label; default 0: all labels but 0. */
-  itkSetMacro(Label, short);
-  itkGetConstMacro(Label, short);
+  itkSetInputMacro(Contours, ContourStack);
+  itkGetInputMacro(Contours, ContourStack);
+  itkSetInputMacro(LabelImage, TLabelImage);
+  itkGetInputMacro(LabelImage, TLabelImage);
 
-  /** Smoothing iterations at the start; default 4. */
-  itkSetMacro(Iterations, int);
-  itkGetConstMacro(Iterations, int);
-  /** How far boundary and interfaces may be from the first ones, mm; default 0.3. 0: they stay as they are. */
-  itkSetMacro(DistanceBound, double);
-  itkGetConstMacro(DistanceBound, double);
-  /** Steps that fair the surfaces; default 10. */
-  itkSetMacro(FairingIterations, int);
-  itkGetConstMacro(FairingIterations, int);
-  /** Rounds of smoothing, swaps, repair and optimisation; default 4. */
-  itkSetMacro(Rounds, int);
-  itkGetConstMacro(Rounds, int);
-  /** Cells with a dihedral angle below are swapped and their inner points optimised, rad; default 0.44 (25 degrees). */
-  itkSetMacro(TargetAngle, double);
-  itkGetConstMacro(TargetAngle, double);
-  /** How cells grow inward from the surfaces, mm a mm; default 0.65. 0: no points are added. */
-  itkSetMacro(Gradation, double);
-  itkGetConstMacro(Gradation, double);
-  /** Passes of optimisation a round; default 1. */
-  itkSetMacro(OptimizationPasses, int);
-  itkGetConstMacro(OptimizationPasses, int);
-  /** How many times DistanceBound surfaces may go to mend the worst cells, at least 1; default 4. */
-  itkSetMacro(SliverFactor, double);
-  itkGetConstMacro(SliverFactor, double);
-  /** Resistance of surfaces to bending where they are fitted (\ref SurfaceBending), without unit: the larger, the
-   * smoother and the farther from the first ones or the contours; default 0.08, 0: none. */
-  itkSetMacro(Stiffness, double);
-  itkGetConstMacro(Stiffness, double);
+  BONE_FILTER_PARAMETERS(MeshQualityParameters, BONE_MESH_QUALITY_PARAMETERS)
+
   /** What the last run did. */
   const ImprovementReport &
   GetReport() const
@@ -98,26 +67,20 @@ public:
   }
 
 protected:
-  MeshQualityFilter() = default;
+  MeshQualityFilter()
+  {
+    this->AddOptionalInputName("Contours");
+    this->AddOptionalInputName("LabelImage");
+  }
   ~MeshQualityFilter() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  Improve(TetraComplex & complex, const ProgressFunction & progress) override;
+  Improve(TetraComplex & complex, const Execution & execution) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  short             m_Label{ 0 };
-  int               m_Iterations{ 4 };
-  double            m_DistanceBound{ 0.3 };
-  int               m_FairingIterations{ 10 };
-  int               m_Rounds{ 4 };
-  double            m_TargetAngle{ 0.44 };
-  double            m_Gradation{ 0.65 };
-  int               m_OptimizationPasses{ 1 };
-  double            m_SliverFactor{ 4.0 };
-  double            m_Stiffness{ 0.08 };
   ImprovementReport m_Report;
 };
 

@@ -5,9 +5,9 @@
 #define boneMeshToMeshFilter_h
 
 #include "boneDensityMesh.h"
-#include "boneSmoothingKernel.h"
-
-#include <itkProcessObject.h>
+#include "boneExecution.h"
+#include "boneMeshFilter.h"
+#include "boneTetraComplex.h"
 
 namespace bone
 {
@@ -19,54 +19,37 @@ namespace bone
  * float coordinates cannot hold the result without an inverted cell, itk::ExceptionObject says so.
  *
  * Cells of the input that are flat or inverted are made positive first by moving inner and interface points (\ref
- * Untangle). Throws itk::ExceptionObject where the input is missing, has no cells, lacks valid face neighbours, or
+ * Untangle). Throws itk::ExceptionObject where the input is missing, has no cells or points that are not finite, lacks valid face neighbours, or
  * where cells stay flat or inverted, with their number. */
 template <typename TMesh>
-class MeshToMeshFilter : public itk::ProcessObject
+class MeshToMeshFilter : public MeshFilter<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(MeshToMeshFilter);
   using Self = MeshToMeshFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshFilter<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
-  itkTypeMacro(MeshToMeshFilter, itk::ProcessObject);
-  using MeshType = TMesh;
-
-  using Superclass::SetInput;
-  void
-  SetInput(const TMesh * mesh);
-  const TMesh *
-  GetInput() const;
-  TMesh *
-  GetOutput();
-  const TMesh *
-  GetOutput() const;
-
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
+  itkTypeMacro(MeshToMeshFilter, MeshFilter);
 
 protected:
-  MeshToMeshFilter();
+  MeshToMeshFilter() = default;
   ~MeshToMeshFilter() override = default;
 
   void
   GenerateData() final;
 
-  /** Whether cells of the input that are flat or inverted are to be made positive, or are an error. */
+  /** Whether cells of the input that are flat or inverted are to be made positive, or else are taken as they are. */
   virtual bool
   NeedsPositiveCells() const
   {
     return true;
   }
-  /** Does the filter's work; \a progress is to be called now and then and throws where the user asked to stop. */
+  /** Does the filter's work. */
   virtual void
-  Improve(TetraComplex & complex, const ProgressFunction & progress) = 0;
+  Improve(TetraComplex & complex, const Execution & execution) = 0;
 
 private:
-  MeshArrays
-  TakeInput() const;
   void
   MakePositive(const MeshArrays & input, TetraComplex & complex) const;
 };

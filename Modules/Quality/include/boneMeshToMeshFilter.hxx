@@ -6,67 +6,12 @@
 
 #include "boneMeshToMeshFilter.h"
 #include "boneQualityMeasures.h"
-#include "boneUntangle.h"
+#include "boneInvertedCellRepair.h"
 
 #include <type_traits>
 
 namespace bone
 {
-template <typename TMesh>
-MeshToMeshFilter<TMesh>::MeshToMeshFilter()
-{
-  this->SetNumberOfRequiredInputs(1);
-  this->SetNumberOfRequiredOutputs(1);
-  this->SetNthOutput(0, this->MakeOutput(0));
-}
-
-template <typename TMesh>
-itk::DataObject::Pointer
-MeshToMeshFilter<TMesh>::MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType)
-{
-  return TMesh::New().GetPointer();
-}
-
-template <typename TMesh>
-void
-MeshToMeshFilter<TMesh>::SetInput(const TMesh * mesh)
-{
-  this->SetNthInput(0, const_cast<TMesh *>(mesh));
-}
-
-template <typename TMesh>
-const TMesh *
-MeshToMeshFilter<TMesh>::GetInput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryInput());
-}
-
-template <typename TMesh>
-TMesh *
-MeshToMeshFilter<TMesh>::GetOutput()
-{
-  return itkDynamicCastInDebugMode<TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TMesh>
-const TMesh *
-MeshToMeshFilter<TMesh>::GetOutput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TMesh>
-MeshArrays
-MeshToMeshFilter<TMesh>::TakeInput() const
-{
-  MeshArrays arrays = this->GetInput()->GetArrays();
-  if (arrays.tetrahedra.empty())
-  {
-    itkExceptionMacro("The input mesh has no tetrahedra.");
-  }
-  return arrays;
-}
-
 template <typename TMesh>
 void
 MeshToMeshFilter<TMesh>::MakePositive(const MeshArrays & input, TetraComplex & complex) const
@@ -76,11 +21,11 @@ MeshToMeshFilter<TMesh>::MakePositive(const MeshArrays & input, TetraComplex & c
   {
     return;
   }
-  const std::size_t left = Untangle(complex);
+  const std::size_t left = RepairInvertedCells(complex);
   if (left > 0)
   {
     itkExceptionMacro("" << inverted << " of the " << input.tetrahedra.size()
-                         << " tetrahedra of the input mesh are flat or inverted, and " << left
+                         << " tetrahedra of the input 'Mesh' are flat or inverted, and " << left
                          << " stay so however inner points are moved; give a mesh whose tetrahedra are all positively "
                             "oriented.");
   }
@@ -90,23 +35,16 @@ template <typename TMesh>
 void
 MeshToMeshFilter<TMesh>::GenerateData()
 {
-  const MeshArrays input = this->TakeInput();
+  const MeshArrays input = this->CopyInput();
   TetraComplex     complex(input);
   if (this->NeedsPositiveCells())
   {
     this->MakePositive(input, complex);
   }
-  this->Improve(complex, [this](double done) {
-    this->UpdateProgress(static_cast<float>(done));
-    if (this->GetAbortGenerateData())
-    {
-      throw itk::ProcessAborted(__FILE__, __LINE__);
-    }
-  });
+  this->Improve(complex, Execution(this, 0.0, 0.95));
   std::vector<IdType> pointId, cellSlot;
   TMesh *             output = this->GetOutput();
   output->SetArrays(complex.Compact(input, pointId, cellSlot));
-  output->SetBufferedRegion(output->GetRequestedRegion());
   if (!std::is_same<typename TMesh::CoordinateType, double>::value && this->NeedsPositiveCells())
   {
     const std::size_t inverted = CountInverted(output->GetArrays());

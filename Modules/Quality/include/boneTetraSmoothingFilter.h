@@ -5,8 +5,7 @@
 #define boneTetraSmoothingFilter_h
 
 #include "boneMeshToMeshFilter.h"
-
-#include <cmath>
+#include "boneSmoothingKernel.h"
 
 namespace bone
 {
@@ -15,7 +14,7 @@ namespace bone
  *
  * Enhanced (default): v' = proj(mean of the neighbours). Inner points take all neighbours; points of the boundary or an
  * interface those along it, and the mean is put back on that surface, which was faired first by no more than
- * DistanceBound (\ref SurfaceTarget); points of curves, where interfaces meet or a flat cut has its rim, stay on their
+ * DistanceBound; points of curves, where interfaces meet or a flat cut has its rim, stay on their
  * curve, and points where curves meet stay. Where a tetrahedron would not be positive (exact), where a dihedral angle
  * would fall both below AngleFloor and below what it was, or where the boundary would pass through itself, the new
  * place is weighted back, v(k) = proj(Weight v + (1 - Weight) v(k-1)), a few times, and the point stays if nothing
@@ -24,8 +23,8 @@ namespace bone
  * Laplacian and Smart are the plain forms that the paper compares with: the mean of all neighbours for all points,
  * without and with a test for inversion. Both shrink the body, and Laplacian may invert cells.
  *
- * Sequential in ascending order of points: the result does not depend on threads. Errors, and
- * what is done about inverted cells of the input: \ref MeshToMeshFilter. Laplacian takes those as they are. */
+ * Sequential in ascending order of points: the result does not depend on threads. Parameters: \ref
+ * TetraSmoothingParameters. Errors, and what is done about inverted cells of the input: \ref MeshToMeshFilter. Laplacian takes those as they are. */
 template <typename TMesh = DensityMesh<double>>
 class TetraSmoothingFilter : public MeshToMeshFilter<TMesh>
 {
@@ -38,23 +37,8 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(TetraSmoothingFilter, MeshToMeshFilter);
 
-  itkSetEnumMacro(Method, SmoothingMethod);
-  itkGetEnumMacro(Method, SmoothingMethod);
-  /** Passes over all points; default 10. */
-  itkSetMacro(Iterations, int);
-  itkGetConstMacro(Iterations, int);
-  /** How far boundary and interfaces may be faired, mm; default 0.3, half the voxel of a usual clinical CT. 0: not. */
-  itkSetMacro(DistanceBound, double);
-  itkGetConstMacro(DistanceBound, double);
-  /** Steps that fair the surfaces; default 10. */
-  itkSetMacro(FairingIterations, int);
-  itkGetConstMacro(FairingIterations, int);
-  /** The paper's alpha, 0..1; default 0.5. */
-  itkSetMacro(Weight, double);
-  itkGetConstMacro(Weight, double);
-  /** Dihedral angle that no move may go below, rad, unless it was below; default 0.14 (8 degrees). */
-  itkSetMacro(AngleFloor, double);
-  itkGetConstMacro(AngleFloor, double);
+  BONE_FILTER_PARAMETERS(TetraSmoothingParameters, BONE_TETRA_SMOOTHING_PARAMETERS)
+
   /** What the last run did. */
   const SmoothingReport &
   GetReport() const
@@ -66,24 +50,18 @@ protected:
   TetraSmoothingFilter() = default;
   ~TetraSmoothingFilter() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  Improve(TetraComplex & complex, const ProgressFunction & progress) override;
+  Improve(TetraComplex & complex, const Execution & execution) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
   bool
   NeedsPositiveCells() const override
   {
-    return m_Method != SmoothingMethod::Laplacian;
+    return this->GetMethod() != SmoothingMethod::Laplacian;
   }
 
 private:
-  SmoothingMethod m_Method{ SmoothingMethod::Enhanced };
-  int             m_Iterations{ 10 };
-  double          m_DistanceBound{ 0.3 };
-  int             m_FairingIterations{ 10 };
-  double          m_Weight{ 0.5 };
-  double          m_AngleFloor{ 0.14 };
   SmoothingReport m_Report;
 };
 

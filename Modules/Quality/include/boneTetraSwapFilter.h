@@ -7,8 +7,6 @@
 #include "boneMeshToMeshFilter.h"
 #include "boneTetraFlips.h"
 
-#include <cmath>
-
 namespace bone
 {
 /** \class TetraSwapFilter
@@ -16,7 +14,8 @@ namespace bone
  *
  * 2-3, 3-2 and 4-4 flips and edge removal, inside a region only: boundary, interfaces and points stay as they are. Each
  * flip strictly raises the smallest dihedral angle of the cells it touches, and new cells are positive (exact).
- * Sequential, the worst cell first: the result does not depend on threads. Errors: \ref MeshToMeshFilter. */
+ * Sequential, the worst cell first: the result does not depend on threads. Parameters: \ref
+ * TetraSwapParameters. Errors: \ref MeshToMeshFilter. */
 template <typename TMesh = DensityMesh<double>>
 class TetraSwapFilter : public MeshToMeshFilter<TMesh>
 {
@@ -29,12 +28,8 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(TetraSwapFilter, MeshToMeshFilter);
 
-  /** Cells with a dihedral angle below are looked at, rad; default 0.35 (20 degrees). */
-  itkSetMacro(TargetAngle, double);
-  itkGetConstMacro(TargetAngle, double);
-  /** Passes over those cells; a pass without a flip ends it. Default 6. */
-  itkSetMacro(MaximumPasses, int);
-  itkGetConstMacro(MaximumPasses, int);
+  BONE_FILTER_PARAMETERS(TetraSwapParameters, BONE_TETRA_SWAP_PARAMETERS)
+
   /** What the last run did. */
   const FlipReport &
   GetReport() const
@@ -46,15 +41,13 @@ protected:
   TetraSwapFilter() = default;
   ~TetraSwapFilter() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
-  Improve(TetraComplex & complex, const ProgressFunction & progress) override;
+  Improve(TetraComplex & complex, const Execution & execution) override;
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  double     m_TargetAngle{ 0.35 };
-  int        m_MaximumPasses{ 6 };
   FlipReport m_Report;
 };
 

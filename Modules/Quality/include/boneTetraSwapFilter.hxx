@@ -10,29 +10,19 @@ namespace bone
 {
 template <typename TMesh>
 void
-TetraSwapFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
+TetraSwapFilter<TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
-  if (!(m_TargetAngle > 0 && m_TargetAngle < 1.23))
-  {
-    itkExceptionMacro("TargetAngle is " << m_TargetAngle
-                                        << " rad; it must lie between 0 and 1.23, the angle of a regular tetrahedron.");
-  }
-  if (m_MaximumPasses < 0)
-  {
-    itkExceptionMacro("MaximumPasses is " << m_MaximumPasses << "; it must not be negative.");
-  }
+  this->VerifyParameters();
 }
 
 template <typename TMesh>
 void
-TetraSwapFilter<TMesh>::Improve(TetraComplex & complex, const ProgressFunction & progress)
+TetraSwapFilter<TMesh>::Improve(TetraComplex & complex, const Execution & execution)
 {
   FlipParameters parameters;
-  parameters.targetAngle = m_TargetAngle;
-  parameters.maximumPasses = m_MaximumPasses;
-  m_Report = ImproveByFlips(complex, parameters);
-  progress(1.0);
+  static_cast<TetraSwapParameters &>(parameters) = this->GetParameters();
+  m_Report = ImproveByFlips(complex, parameters, {}, nullptr, execution);
 }
 
 template <typename TMesh>
@@ -40,8 +30,7 @@ void
 TetraSwapFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "TargetAngle: " << m_TargetAngle << std::endl;
-  os << indent << "MaximumPasses: " << m_MaximumPasses << std::endl;
+  PrintParameters(os, indent, this->GetParameters());
 }
 } // namespace bone
 

@@ -44,7 +44,7 @@ LargestTurn(const SurfaceEnergy & energy)
   double largest = 0.0;
   for (const auto & [a, b] : energy.Edges())
   {
-    largest = std::max(largest, energy.Turn(a, b));
+    largest = std::max(largest, energy.Deviation(a, b));
   }
   return largest;
 }

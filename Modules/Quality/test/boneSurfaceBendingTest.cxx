@@ -166,7 +166,7 @@ TEST(SurfaceBending, SmoothsWhatIsRoughWithoutShrinkingIt)
 TEST(SurfaceBending, TheMeanTurnIsOfEdgesWithinSlicesWhereThereAreSlices)
 {
   const TetraComplex complex(RoughRod(0.4, 6));
-  EXPECT_NEAR(MeanBoundaryTurn(complex, {}), test::MeanTurn(complex), 1e-9);
+  EXPECT_NEAR(MeanBoundaryDeviation(complex, {}), test::MeanTurn(complex), 1e-9);
   // A smooth rod turns by nothing where slices meet, and around itself between them.
   const MeshArrays   smooth = RoughRod(0.0, 6);
   const TetraComplex rod(smooth);
@@ -175,8 +175,8 @@ TEST(SurfaceBending, TheMeanTurnIsOfEdgesWithinSlicesWhereThereAreSlices)
   {
     slices.push_back(static_cast<int>(std::lround(x.z() / 2.0)));
   }
-  EXPECT_LT(MeanBoundaryTurn(rod, slices), 1e-6);
-  EXPECT_GT(MeanBoundaryTurn(rod, {}), 0.1);
+  EXPECT_LT(MeanBoundaryDeviation(rod, slices), 1e-6);
+  EXPECT_GT(MeanBoundaryDeviation(rod, {}), 0.1);
 }
 
 TEST(SurfaceBending, FitsGoOnUntilTheBoundaryTurnsByTheShareWanted)
@@ -190,9 +190,9 @@ TEST(SurfaceBending, FitsGoOnUntilTheBoundaryTurnsByTheShareWanted)
     parameters.shape = &shape;
     parameters.stiffness = 1e-3;
     parameters.morePasses = more ? 6 : 0;
-    parameters.turnShare = 0.1;
+    parameters.deviationShare = 0.1;
     ImproveMesh(complex, parameters);
-    turn[more] = MeanBoundaryTurn(complex, {});
+    turn[more] = MeanBoundaryDeviation(complex, {});
   }
   EXPECT_LT(turn[1], turn[0]);
 }

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneTetraSmoothingFilter.h"
 
+#include "boneTriangleTree.h"
+
 #include "../../Core/test/boneTestBodies.h"
 #include "boneMeshValidator.h"
 #include "boneQualityMeasures.h"

@@ -30,10 +30,10 @@ public:
     std::vector<std::pair<double, SurfaceEnergy::Edge>> sharp;
     for (const auto & edge : m_Energy.Edges())
     {
-      const double turn = m_Energy.Turn(edge.first, edge.second);
-      if (turn > m_Parameters.angle)
+      const double deviation = m_Energy.Deviation(edge.first, edge.second);
+      if (deviation > m_Parameters.angle)
       {
-        sharp.emplace_back(-turn, edge);
+        sharp.emplace_back(-deviation, edge);
       }
     }
     std::sort(sharp.begin(), sharp.end());
@@ -52,7 +52,7 @@ private:
   CollapseEnd(IdType v, IdType other)
   {
     if (m_Complex.Star(v).empty() || m_Complex.Star(other).empty() || m_Complex.Dimension(v) != 2 ||
-        !(m_Energy.Turn(v, other) > m_Parameters.angle))
+        !(m_Energy.Deviation(v, other) > m_Parameters.angle))
     {
       return false;
     }

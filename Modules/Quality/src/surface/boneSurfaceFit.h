@@ -6,6 +6,7 @@
 
 #include "boneContourShape.h"
 #include "boneLabelOutline.h"
+#include "boneMeshQualityParameters.h"
 #include "bonePointMover.h"
 
 namespace bone
@@ -13,7 +14,7 @@ namespace bone
 struct SurfaceFitParameters
 {
   int    steps{ 1 };
-  double stiffness{ 0.08 };    ///< of edges against turning, see SurfaceBending; 0: none
+  double stiffness{ MeshQualityParameters().stiffness }; ///< of edges against bending, see SurfaceBending; 0: none
   double cosineFloor{ 0.985 }; ///< of the dihedral angle that no move may go below, unless it was below
 };
 
@@ -25,7 +26,7 @@ struct SurfaceFitTarget
   const LabelOutline *  outline{ nullptr }; ///< of the boundary
 };
 
-/** \brief Moves points of boundary and interfaces until the surfaces lie on a target in the mean, and turn little.
+/** \brief Moves points of boundary and interfaces until the surfaces lie on a target in the mean, and bend little.
  *
  * Points on a curved surface leave the triangles between them inside it. Here springs draw places on the triangles to
  * the target, and the surfaces resist bending (\ref SurfaceBending): the fixed point is a least-squares fit of the
@@ -38,7 +39,8 @@ std::size_t
 FitSurfaces(TetraComplex &               complex,
             PointMover &                 mover,
             const SurfaceFitTarget &     target,
-            const SurfaceFitParameters & parameters);
+            const SurfaceFitParameters & parameters,
+            const Execution &            execution = {});
 } // namespace bone
 
 #endif

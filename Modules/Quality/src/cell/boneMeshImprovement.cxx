@@ -4,6 +4,7 @@
 #include "boneMeshImprovement.h"
 
 #include "boneContourFlips.h"
+#include "boneEnhancedSmoothing.h"
 #include "boneInteriorRefinement.h"
 #include "boneSharpEdges.h"
 #include "boneSideKeeper.h"
@@ -30,7 +31,7 @@ constexpr int    SliverPasses = 2;
 constexpr int FitsToFlip = 2;
 /** Fits from this many before the last may be stiffer than the first. */
 constexpr int FirstStiffer = 2;
-/** Stiffness rises from one fit to the next by this power of what the boundary turns by over what is wanted ... */
+/** Stiffness rises from one fit to the next by this power of the boundary's dihedral deviation over the wanted one ... */
 constexpr double StiffnessPower = 4.0;
 /** ... but by no less than this share, twice that, and so on, and by no more than this factor ... */
 constexpr double LeastStiffening = 0.1;
@@ -47,14 +48,14 @@ constexpr double SurfaceFactor = 1.5;
 class MeshImprover
 {
 public:
-  MeshImprover(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress)
+  MeshImprover(TetraComplex & complex, const ImprovementParameters & parameters, const Execution & execution)
     : m_Complex(complex)
     , m_Parameters(parameters)
-    , m_Progress(progress)
-    , m_FirstTurn(MeanBoundaryTurn(complex, parameters.slices))
+    , m_Execution(execution)
+    , m_FirstDeviation(MeanBoundaryDeviation(complex, parameters.slices))
     , m_First(complex, 0.0, 0)
     , m_Bound(complex, m_First, parameters.distanceBound)
-    , m_Mover(complex, &m_Bound)
+    , m_Mover(complex, &m_Bound, execution)
     , m_Target(complex, parameters.distanceBound, parameters.fairingIterations)
     , m_Volumes(complex)
     , m_Optimizer(complex, m_Mover, m_Target)
@@ -64,35 +65,31 @@ public:
   ImprovementReport
   Run()
   {
-    const double steps = m_Parameters.rounds + 1.0;
     m_Report.repairs += m_Repair.CollapseShort(TinyEdge * m_Parameters.distanceBound);
     Smooth(m_Parameters.iterations, SurfaceMotion::ToFairedPlace);
-    Advance(1.0 / steps);
+    m_Execution.Report(0.1);
     for (int round = 0; round < m_Parameters.rounds; ++round)
     {
+      const Execution part = m_Execution.Part(0.1 + 0.6 * round / m_Parameters.rounds,
+                                              0.1 + 0.6 * (round + 1) / m_Parameters.rounds);
       Smooth(SmoothingsInRound, SurfaceMotion::None);
+      part.Report(0.1);
       if (round + 1 < m_Parameters.rounds && m_Parameters.gradation > 0)
       {
         Refine();
       }
+      part.Report(0.4);
       RestoreVolumes(m_Parameters.surfaceAngle, 0.0);
-      ImproveWorst((round + 1) / steps, 1.0 / steps);
+      part.Report(0.5);
+      ImproveWorst(part.Part(0.5, 0.8));
       MendSlivers();
+      part.Report(1.0);
     }
     FitSurfacesAndInside();
     return m_Report;
   }
 
 private:
-  void
-  Advance(double done) const
-  {
-    if (m_Progress)
-    {
-      m_Progress(done);
-    }
-  }
-
   /** mm, of surfaces from what they were. */
   void
   SetBound(double bound)
@@ -104,12 +101,10 @@ private:
   void
   Smooth(int iterations, SurfaceMotion motion)
   {
-    SmoothingParameters smoothing;
-    smoothing.surfaceMotion = motion;
+    const TetraSmoothingParameters smoothing;
     for (int i = 0; i < iterations; ++i)
     {
-      EnhancedIteration(m_Complex, m_Mover, m_Target, smoothing, m_Report.smoothing);
-      Advance(0.0);
+      EnhancedIteration(m_Complex, m_Mover, m_Target, smoothing, motion, m_Report.smoothing);
     }
   }
 
@@ -130,7 +125,7 @@ private:
     {
       SideKeeper::Parameters keep;
       keep.cosineFloor = std::cos(SideAngle);
-      SideKeeper(*m_Parameters.outline).Restore(m_Complex, m_Mover, keep);
+      SideKeeper(*m_Parameters.outline).Restore(m_Complex, m_Mover, keep, m_Execution.Silent());
     }
   }
 
@@ -140,7 +135,7 @@ private:
     FlipParameters flips;
     flips.targetAngle = angle;
     const auto mark = [this](const FlipResult & flip) { m_Optimizer.Mark(flip.created); };
-    m_Report.flips += ImproveByFlips(m_Complex, flips, mark, &m_FlipMemory).done;
+    m_Report.flips += ImproveByFlips(m_Complex, flips, mark, &m_FlipMemory, m_Execution.Silent()).done;
   }
 
   void
@@ -166,21 +161,21 @@ private:
   }
 
   void
-  ImproveWorst(double done, double share)
+  ImproveWorst(const Execution & execution)
   {
     m_Optimizer.MarkAll();
     Flip(m_Parameters.targetAngle);
     Repair(m_Parameters.repairAngle);
     for (int pass = 0; pass < m_Parameters.optimizationPasses; ++pass)
     {
-      Advance(done + share * pass / m_Parameters.optimizationPasses);
+      execution.Report(static_cast<double>(pass) / m_Parameters.optimizationPasses);
       m_Report.optimized += m_Optimizer.Run(std::cos(m_Parameters.targetAngle), std::cos(m_Parameters.surfaceAngle));
       Flip(m_Parameters.targetAngle);
       Repair(m_Parameters.repairAngle);
     }
   }
 
-  /** Surfaces to contours or first surfaces, then what is inside to them, in turn. */
+  /** Surfaces to contours or first surfaces, then what is inside to them, in passes. */
   void
   FitSurfacesAndInside()
   {
@@ -192,6 +187,7 @@ private:
     for (int pass = 0; pass < passes; ++pass)
     {
       FitOnce(stiffness);
+      m_Execution.Report(0.7 + 0.25 * (pass + 1) / most);
       const bool isLast = pass + 1 == passes;
       if (isLast || pass % FitsToFlip == 0)
       {
@@ -225,7 +221,7 @@ private:
     SurfaceFitParameters fit;
     fit.stiffness = stiffness;
     fit.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-    FitSurfaces(m_Complex, m_Mover, { m_First, m_Parameters.shape, m_Parameters.outline }, fit);
+    FitSurfaces(m_Complex, m_Mover, { m_First, m_Parameters.shape, m_Parameters.outline }, fit, m_Execution.Silent());
     if (m_Parameters.shape)
     {
       ChangeEdges(stiffness);
@@ -241,19 +237,19 @@ private:
     return std::min(stiffness * factor, MostStiffness * m_Parameters.stiffness);
   }
 
-  /** What the boundary turns by over what is wanted; 0 where contours do not tell how smooth it may be. */
+  /** The boundary's mean dihedral deviation over the wanted one; 0 where contours do not tell how smooth it may be. */
   double
   Excess() const
   {
-    const bool known = m_Parameters.shape && m_Parameters.stiffness > 0 && m_FirstTurn > 0;
-    return known ? MeanBoundaryTurn(m_Complex, m_Parameters.slices) / (m_Parameters.turnShare * m_FirstTurn) : 0.0;
+    const bool known = m_Parameters.shape && m_Parameters.stiffness > 0 && m_FirstDeviation > 0;
+    return known ? MeanBoundaryDeviation(m_Complex, m_Parameters.slices) / (m_Parameters.deviationShare * m_FirstDeviation) : 0.0;
   }
 
-  /** Collapses and flips of surface edges by contours and turns. */
+  /** Collapses and flips of surface edges by contours and dihedral deviation. */
   void
   ChangeEdges(double stiffness)
   {
-    const ContourSamples contours(m_Complex, *m_Parameters.shape);
+    const ContourSamples contours(m_Complex, *m_Parameters.shape, m_Execution.Silent());
     const SurfaceBending bending(m_Complex, stiffness);
     SurfaceEnergy        energy(m_Complex, contours, bending);
     SharpEdgeParameters  sharp;
@@ -297,8 +293,8 @@ private:
 
   TetraComplex &                m_Complex;
   const ImprovementParameters & m_Parameters;
-  const ProgressFunction &      m_Progress;
-  double                        m_FirstTurn; ///< mean of the boundary as it was, rad
+  const Execution &             m_Execution;
+  double                        m_FirstDeviation; ///< mean of the boundary as it was, rad
   SurfaceTarget                 m_First;     ///< the surfaces as they were
   SurfaceBound                  m_Bound;
   PointMover                    m_Mover;
@@ -312,13 +308,8 @@ private:
 } // namespace
 
 ImprovementReport
-ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const ProgressFunction & progress)
+ImproveMesh(TetraComplex & complex, const ImprovementParameters & parameters, const Execution & execution)
 {
-  ImprovementReport report = MeshImprover(complex, parameters, progress).Run();
-  if (progress)
-  {
-    progress(1.0);
-  }
-  return report;
+  return MeshImprover(complex, parameters, execution).Run();
 }
 } // namespace bone

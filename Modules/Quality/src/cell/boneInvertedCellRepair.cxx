@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneUntangle.h"
+#include "boneInvertedCellRepair.h"
 
 #include "bonePredicates.h"
 #include "boneSurfaceTarget.h"
@@ -112,7 +112,7 @@ private:
 } // namespace
 
 std::size_t
-Untangle(TetraComplex & complex)
+RepairInvertedCells(TetraComplex & complex)
 {
   std::vector<IdType> bad = BadCells(complex);
   PointUntangler      untangler(complex);

@@ -10,10 +10,11 @@
 namespace bone
 {
 /** \class SideKeeper
- * \brief Puts the boundary of a mesh between the voxels of a label that it should be between, where little is missing.
+ * \brief Moves the boundary of a mesh to the right side of the voxel centres that it passes closely on the wrong side.
  *
- * A fitted surface passes the centres of some voxels by a hundredth of a millimetre on the wrong side: a move that
- * nobody sees, and overlap with the label is gained. Farther off, it has its reasons. */
+ * A fitted surface passes the centres of some voxels on the wrong side by a few hundredths of a millimetre. A move of
+ * that size does not change the shape, and the overlap with the label grows. Centres that lie farther on the wrong side
+ * are left, because contours and stiffness put the surface there. */
 class SideKeeper
 {
 public:
@@ -33,7 +34,10 @@ public:
    * the wrong side. Points of curves, corners and flat cuts stay. Returns the number of moves. Throws
    * itk::ExceptionObject where the boundary is not closed. */
   std::size_t
-  Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const;
+  Restore(TetraComplex &     complex,
+          PointMover &       mover,
+          const Parameters & parameters,
+          const Execution &  execution = {}) const;
 
 private:
   const LabelOutline & m_Outline;

@@ -134,7 +134,7 @@ MeshRepair::CollapseKeepsSurfaces(IdType v, IdType w)
       continue;
     }
     added.push_back({ { w, face.a, face.b }, face.surface });
-    // A triangle that turns by more than a right angle folds the surface.
+    // A triangle whose normal changes by more than a right angle folds the surface.
     const Vector3 before = (p[face.a] - p[v]).cross(p[face.b] - p[v]);
     const Vector3 after = (p[face.a] - p[w]).cross(p[face.b] - p[w]);
     if (!(before.dot(after) > 0))

@@ -53,9 +53,10 @@ MeanBoundaryEdge(const TetraComplex & complex)
 }
 } // namespace
 
-PointMover::PointMover(TetraComplex & complex, SurfaceBound * bound)
+PointMover::PointMover(TetraComplex & complex, SurfaceBound * bound, const Execution & execution)
   : m_Complex(complex)
   , m_Bound(bound)
+  , m_Execution(execution)
   , m_Grid(MeanBoundaryEdge(complex))
 {
   ForEachBoundaryTriangle(complex, [&](const TriangleIds & t) { m_Grid.Insert(t, complex.Points()); });
@@ -86,6 +87,7 @@ PointMover::StarIsPositive(IdType p) const
 bool
 PointMover::ReplaceSurface(const std::vector<SurfaceTriangle> & removed, const std::vector<SurfaceTriangle> & added)
 {
+  m_Execution.ThrowIfAborted();
   const auto &             points = m_Complex.Points();
   std::vector<TriangleIds> goes, comes;
   for (const auto & [from, to] : { std::make_pair(&removed, &goes), std::make_pair(&added, &comes) })
@@ -159,6 +161,7 @@ PointMover::BoundaryCrosses(IdType p) const
 MeshOperation
 PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
 {
+  m_Execution.ThrowIfAborted();
   const auto &  points = m_Complex.Points();
   const Vector3 before = points[p];
   const double  worst = cosineFloor < 1.0 ? WorstCosine(p) : 1.0;

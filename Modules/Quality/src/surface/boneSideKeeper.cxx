@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneSideKeeper.h"
 
-#include "boneParallelFor.h"
 #include "boneTriangleDistance.h"
 
 #include <algorithm>
@@ -42,13 +41,13 @@ struct Near
 class NearCentres
 {
 public:
-  NearCentres(const TetraComplex & complex, const LabelOutline & outline, double farthest)
+  NearCentres(const TetraComplex & complex, const LabelOutline & outline, double farthest, const Execution & execution)
     : m_Complex(complex)
     , m_Surface(complex.Points(), BoundaryFaces(complex))
     , m_AtPoint(complex.Points().size())
   {
     std::vector<std::optional<TriangleDistance::Nearest>> nearest(outline.voxels.size());
-    ParallelFor(nearest.size(), [&](std::size_t v) {
+    execution.For(nearest.size(), [&](std::size_t v) {
       const Vector3 & centre = outline.voxels[v].centre;
       if (m_Surface.IsWithin(centre, farthest))
       {
@@ -167,10 +166,10 @@ private:
 } // namespace
 
 std::size_t
-SideKeeper::Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const
+SideKeeper::Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters, const Execution & execution) const
 {
   const double reach = parameters.reach * m_Outline.spacing, margin = parameters.margin * m_Outline.spacing;
-  NearCentres  near(complex, m_Outline, Surroundings * reach);
+  NearCentres  near(complex, m_Outline, Surroundings * reach, execution);
   std::vector<std::pair<double, int>> order;
   for (std::size_t c = 0; c < near.Centres().size(); ++c)
   {

@@ -36,7 +36,7 @@ public:
 
   /** Angle between the two triangles at an edge, rad; 0 where there are others. */
   double
-  Turn(IdType a, IdType b) const;
+  Deviation(IdType a, IdType b) const;
 
   using Samples = std::vector<const ContourShape::Sample *>;
   /** The third point of a triangle at an edge. */

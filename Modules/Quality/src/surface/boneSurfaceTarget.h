@@ -31,8 +31,8 @@ public:
   Vector3
   Project(const TetraComplex & complex, IdType p, const Vector3 & x) const;
 
-  /** Where a surface point is to go whose neighbours have the mean x. On ridges and tips, where the surface turns too
-   * sharply for the mean to lie beside it, that is the point's own faired place: sliding down would cut them off. */
+  /** Where a surface point is to go whose neighbours have the mean x. On ridges and tips, where the surface bends too
+   * sharply for the mean to lie near it, that is the point's own faired place: sliding down would cut them off. */
   Vector3
   Place(const TetraComplex & complex, IdType p, const Vector3 & x) const
   {

@@ -11,11 +11,11 @@ namespace bone
 {
 struct SharpEdgeParameters
 {
-  double angle{ 0.7 };        ///< rad; edges that turn by more are looked at
+  double angle{ 0.7 };        ///< rad; edges of more dihedral deviation are looked at
   double cosineFloor{ 0.98 }; ///< of the dihedral angle that cells may have afterwards, though they were better
 };
 
-/** \brief Collapses edges of boundary and interfaces where these turn sharply and contours do not ask for it.
+/** \brief Collapses edges of boundary and interfaces of large dihedral deviation where contours do not ask for it.
  *
  * Where contours join, part or end, tilings have folds: pockets and fins between two sheets of a surface, which no
  * motion of points takes out, as both sheets lie on the same contours. Ends of a sharp edge are collapsed onto a

@@ -53,11 +53,11 @@ SurfaceEnergy::Corners(IdType a, IdType b) const
 }
 
 double
-SurfaceEnergy::Turn(IdType a, IdType b) const
+SurfaceEnergy::Deviation(IdType a, IdType b) const
 {
   const auto & x = m_Complex.Points();
   const auto   corners = Corners(a, b);
-  return corners ? TurnAt(x[a], x[b], x[(*corners)[0]], x[(*corners)[1]]) : 0.0;
+  return corners ? DihedralDeviation(x[a], x[b], x[(*corners)[0]], x[(*corners)[1]]) : 0.0;
 }
 
 SurfaceEnergy::Samples

@@ -4,7 +4,6 @@
 #include "boneSurfaceFit.h"
 
 #include "boneContourSamples.h"
-#include "boneParallelFor.h"
 #include "boneSurfaceBending.h"
 #include "boneTriangleTree.h"
 
@@ -89,14 +88,14 @@ MeanEdge(const std::vector<Face> & faces, const std::vector<Vector3> & x)
 
 /** Springs from triangles to the shape between slices, or where there is none to the first surfaces. */
 Springs
-SpringsOfTriangles(const TetraComplex & complex, const std::vector<Face> & faces, const SurfaceFitTarget & target)
+SpringsOfTriangles(const TetraComplex & complex, const std::vector<Face> & faces, const SurfaceFitTarget & target, const Execution & execution)
 {
   const auto & x = complex.Points();
   const auto & samples = target.shape ? OneSample : ThreeSamples;
   const auto   count = samples.size();
   const double share = (target.shape ? WeightBetweenSlices : 1.0) / static_cast<double>(count);
   Springs      springs(faces.size() * count);
-  ParallelFor(faces.size(), [&](std::size_t k) {
+  execution.For(faces.size(), [&](std::size_t k) {
     const TriangleIds & f = faces[k].ids;
     const Vector3       normal = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]);
     const double        area = normal.norm();
@@ -151,7 +150,7 @@ AddContours(const TetraComplex & complex, const ContourSamples & contours, Sprin
  * \param normal  of the slices of contours: most is asked of the faces about what lies between them; null: there are
  * none. */
 void
-AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vector3 * normal, Springs & springs)
+AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vector3 * normal, const Execution & execution, Springs & springs)
 {
   constexpr double                    farthest = 1.5, leastSlope = 0.3;
   const auto &                        x = complex.Points();
@@ -163,7 +162,7 @@ AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vec
   }
   const TriangleTree                                 tree(std::move(triangles));
   std::vector<std::optional<SurfaceBending::Spring>> found(outline.faces.size());
-  ParallelFor(found.size(), [&](std::size_t k) {
+  execution.For(found.size(), [&](std::size_t k) {
     const LabelOutline::Face & face = outline.faces[k];
     const double               along = normal ? normal->dot(face.outward) : 1.0;
     const auto                 nearest = tree.FindNearest(face.centre);
@@ -209,25 +208,26 @@ std::size_t
 FitSurfaces(TetraComplex &               complex,
             PointMover &                 mover,
             const SurfaceFitTarget &     target,
-            const SurfaceFitParameters & parameters)
+            const SurfaceFitParameters & parameters,
+            const Execution &            execution)
 {
   constexpr int        halvings = 3;
   std::size_t          moves = 0;
   const ContourShape * shape = target.shape;
-  const auto           contours = shape ? std::make_optional<ContourSamples>(complex, *shape) : std::nullopt;
+  const auto           contours = shape ? std::make_optional<ContourSamples>(complex, *shape, execution) : std::nullopt;
   const SurfaceBending bending(complex, parameters.stiffness);
   for (int step = 0; step < parameters.steps; ++step)
   {
     const auto   faces = FacesOf(complex);
     const double shortest = ShortestMove * MeanEdge(faces, complex.Points());
-    Springs      springs = SpringsOfTriangles(complex, faces, target);
+    Springs      springs = SpringsOfTriangles(complex, faces, target, execution);
     if (contours)
     {
       AddContours(complex, *contours, springs);
     }
     if (target.outline)
     {
-      AddOutline(complex, *target.outline, shape ? &shape->GetNormal() : nullptr, springs);
+      AddOutline(complex, *target.outline, shape ? &shape->GetNormal() : nullptr, execution, springs);
     }
     const auto targets = bending.Solve(complex.Points(), FreePoints(complex, springs), springs);
     for (IdType p = 0; p < static_cast<IdType>(targets.size()); ++p)

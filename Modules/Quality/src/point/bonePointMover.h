@@ -4,6 +4,7 @@
 #ifndef bonePointMover_h
 #define bonePointMover_h
 
+#include "boneExecution.h"
 #include "boneSurfaceBound.h"
 #include "boneSurfaceGrid.h"
 
@@ -20,8 +21,9 @@ namespace bone
 class PointMover
 {
 public:
-  /** \param bound  of the surfaces; none: they may go anywhere. */
-  explicit PointMover(TetraComplex & complex, SurfaceBound * bound = nullptr);
+  /** \param bound  of the surfaces; none: they may go anywhere.
+   * \param execution  its abort is noticed at each move: what moves points throws itk::ProcessAborted then. */
+  explicit PointMover(TetraComplex & complex, SurfaceBound * bound = nullptr, const Execution & execution = {});
 
   /** \param cosineFloor  cosine of the smallest dihedral angle wanted; 1: no floor. */
   MeshOperation
@@ -46,6 +48,7 @@ private:
 
   TetraComplex &                         m_Complex;
   SurfaceBound *                         m_Bound;
+  Execution                              m_Execution;
   SurfaceGrid                            m_Grid;
   std::vector<TriangleIds>               m_Boundary;  ///< boundary triangles at the point that is moved
   std::vector<SurfaceTriangle>           m_Triangles; ///< of all surfaces there

@@ -1,8 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#ifndef boneUntangle_h
-#define boneUntangle_h
+#ifndef boneInvertedCellRepair_h
+#define boneInvertedCellRepair_h
 
 #include "boneTetraComplex.h"
 
@@ -15,7 +15,7 @@ namespace bone
  * by a pattern search. Interface points stay on their interface, points of the boundary, of curves and corners where
  * they are. Returns the number of cells that are still flat or inverted (exact). */
 std::size_t
-Untangle(TetraComplex & complex);
+RepairInvertedCells(TetraComplex & complex);
 } // namespace bone
 
 #endif

@@ -12,7 +12,7 @@ namespace bone
 {
 namespace
 {
-/** Of the mean turn: above it turns count by themselves. */
+/** Of the mean deviation: above it deviations count by themselves. */
 constexpr double SoftShare = 1.0 / 8;
 /** mm^2 and mm: of an edge and a triangle no shorter and no flatter is looked at. */
 constexpr double Tiny = 1e-9;
@@ -25,9 +25,9 @@ Cotangent(const Vector3 & u, const Vector3 & v)
   return u.dot(v) / std::max(u.cross(v).norm(), Tiny);
 }
 
-/** Factors of the four points in the vector whose length is the turn times the edge's length. */
+/** Factors of the four points in the vector whose length is the deviation times the edge's length. */
 std::array<double, 4>
-TurnFactors(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+DeviationFactors(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
 {
   const double ac = Cotangent(b - a, c - a), ad = Cotangent(b - a, d - a);
   const double bc = Cotangent(a - b, c - b), bd = Cotangent(a - b, d - b);
@@ -181,28 +181,28 @@ private:
 } // namespace
 
 double
-TurnAt(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
+DihedralDeviation(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d)
 {
   const Vector3 e = b - a, n = e.cross(c - a), m = (d - a).cross(e);
   return std::atan2(n.cross(m).norm(), n.dot(m));
 }
 
 double
-MeanBoundaryTurn(const TetraComplex & complex, const std::vector<int> & slices)
+MeanBoundaryDeviation(const TetraComplex & complex, const std::vector<int> & slices)
 {
   const auto & x = complex.Points();
-  double       turns = 0.0;
+  double       deviations = 0.0;
   std::size_t  count = 0;
   for (const auto & [surface, h] : HingesOf(complex))
   {
     const bool within = slices.empty() || slices[h[0]] == slices[h[1]];
     if (within && complex.Surfaces().surfaces[surface].IsBoundary())
     {
-      turns += TurnAt(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
+      deviations += DihedralDeviation(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
       ++count;
     }
   }
-  return count > 0 ? turns / static_cast<double>(count) : 0.0;
+  return count > 0 ? deviations / static_cast<double>(count) : 0.0;
 }
 
 SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
@@ -213,32 +213,32 @@ SurfaceBending::SurfaceBending(const TetraComplex & complex, double stiffness)
   }
   const auto &      x = complex.Points();
   std::vector<char> isEnd(x.size(), 0);
-  double            turns = 0.0, area = 0.0;
+  double            deviations = 0.0, area = 0.0;
   for (const Hinge & h : m_Hinges)
   {
-    turns += TurnAt(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
+    deviations += DihedralDeviation(x[h[0]], x[h[1]], x[h[2]], x[h[3]]);
     const Vector3 edge = x[h[1]] - x[h[0]];
     area += (edge.cross(x[h[2]] - x[h[0]]).norm() + edge.cross(x[h[3]] - x[h[0]]).norm()) / 6.0; // a triangle has three
     isEnd[h[0]] = isEnd[h[1]] = 1;
   }
-  if (turns > 0)
+  if (deviations > 0)
   {
-    m_SoftTurn = SoftShare * turns / static_cast<double>(m_Hinges.size());
+    m_SoftDeviation = SoftShare * deviations / static_cast<double>(m_Hinges.size());
     m_Factor = stiffness * std::pow(area / static_cast<double>(std::count(isEnd.begin(), isEnd.end(), 1)), 2);
   }
 }
 
 double
-SurfaceBending::Softening(double turn) const
+SurfaceBending::Softening(double deviation) const
 {
-  return 1.0 / (1.0 + turn / m_SoftTurn);
+  return 1.0 / (1.0 + deviation / m_SoftDeviation);
 }
 
 double
 SurfaceBending::Energy(const Vector3 & a, const Vector3 & b, const Vector3 & c, const Vector3 & d) const
 {
-  const double turn = TurnAt(a, b, c, d);
-  return m_Factor * turn * turn * Softening(turn);
+  const double deviation = DihedralDeviation(a, b, c, d);
+  return m_Factor * deviation * deviation * Softening(deviation);
 }
 
 std::vector<Vector3>
@@ -251,8 +251,8 @@ SurfaceBending::Solve(const std::vector<Vector3> & points,
   {
     const Vector3 &a = points[h[0]], &b = points[h[1]], &c = points[h[2]], &d = points[h[3]];
     const double   squared = std::max((b - a).squaredNorm(), Tiny);
-    const double   stiffness = m_Factor * Softening(TurnAt(a, b, c, d)) / squared;
-    system.Add<4>(h, TurnFactors(a, b, c, d), stiffness, Vector3::Zero());
+    const double   stiffness = m_Factor * Softening(DihedralDeviation(a, b, c, d)) / squared;
+    system.Add<4>(h, DeviationFactors(a, b, c, d), stiffness, Vector3::Zero());
   }
   return system.Solve();
 }

@@ -5,6 +5,7 @@
 #define boneContourSamples_h
 
 #include "boneContourShape.h"
+#include "boneExecution.h"
 #include "boneSurfaceGrid.h"
 #include "boneTetraComplex.h"
 
@@ -21,7 +22,7 @@ namespace bone
 class ContourSamples
 {
 public:
-  ContourSamples(const TetraComplex & complex, const ContourShape & shape);
+  ContourSamples(const TetraComplex & complex, const ContourShape & shape, const Execution & execution = {});
 
   /** A point of a contour and the triangle nearest to it. */
   struct Match
@@ -40,6 +41,7 @@ public:
   FindMatches(const TetraComplex & complex) const;
 
 private:
+  Execution                                      m_Execution;
   std::vector<std::vector<ContourShape::Sample>> m_Levels; ///< by level less 1
 };
 } // namespace bone

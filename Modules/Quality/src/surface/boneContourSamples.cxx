@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneContourSamples.h"
 
-#include "boneParallelFor.h"
 
 #include <optional>
 
@@ -49,7 +48,8 @@ TrianglesOf(const TetraComplex & complex, int level)
 }
 } // namespace
 
-ContourSamples::ContourSamples(const TetraComplex & complex, const ContourShape & shape)
+ContourSamples::ContourSamples(const TetraComplex & complex, const ContourShape & shape, const Execution & execution)
+  : m_Execution(execution)
 {
   for (int level = 1; level <= shape.GetLevels(); ++level)
   {
@@ -77,7 +77,7 @@ ContourSamples::FindMatches(const TetraComplex & complex) const
     }
     const TriangleTree                tree(std::move(triangles));
     std::vector<std::optional<Match>> found(m_Levels[k].size());
-    ParallelFor(found.size(), [&](std::size_t s) {
+    m_Execution.For(found.size(), [&](std::size_t s) {
       const ContourShape::Sample & sample = m_Levels[k][s];
       const auto                   nearest = tree.FindNearest(sample.place);
       if (nearest.triangle < 0 || nearest.squaredDistance > Farthest * Farthest)

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneSmoothingKernel.h"
+#include "boneEnhancedSmoothing.h"
 
 #include "boneVolumeKeeper.h"
 
@@ -77,11 +77,11 @@ void
 EnhancedIteration(TetraComplex &              complex,
                   PointMover &                mover,
                   const SurfaceTarget &       target,
-                  const SmoothingParameters & parameters,
+                  const TetraSmoothingParameters & parameters,
+                  SurfaceMotion motion,
                   SmoothingReport &           report)
 {
   const double        cosineFloor = std::cos(parameters.angleFloor);
-  const SurfaceMotion motion = parameters.surfaceMotion;
   for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
   {
     if (complex.Star(p).empty() || complex.Dimension(p) == 0 ||
@@ -113,10 +113,10 @@ EnhancedIteration(TetraComplex &              complex,
 }
 
 SmoothingReport
-SmoothPoints(TetraComplex & complex, const SmoothingParameters & parameters, const ProgressFunction & progress)
+SmoothPoints(TetraComplex & complex, const TetraSmoothingParameters & parameters, const Execution & execution)
 {
   SmoothingReport report;
-  PointMover      mover(complex);
+  PointMover      mover(complex, nullptr, execution);
   const bool      enhanced = parameters.method == SmoothingMethod::Enhanced;
   SurfaceTarget   target(complex, parameters.distanceBound, enhanced ? parameters.fairingIterations : 0);
   SurfaceTarget   first(complex, 0.0, 0);
@@ -125,16 +125,13 @@ SmoothPoints(TetraComplex & complex, const SmoothingParameters & parameters, con
   {
     if (enhanced)
     {
-      EnhancedIteration(complex, mover, target, parameters, report);
+      EnhancedIteration(complex, mover, target, parameters, SurfaceMotion::Slide, report);
     }
     else
     {
       PlainIteration(complex, mover, parameters.method == SmoothingMethod::Smart, report);
     }
-    if (progress)
-    {
-      progress(double(i + 1) / parameters.iterations);
-    }
+    execution.Report(static_cast<double>(i + 1) / (parameters.iterations + 1));
   }
   if (enhanced && parameters.iterations > 0)
   {
