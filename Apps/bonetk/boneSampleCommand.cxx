@@ -4,7 +4,7 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 
-#include "boneInteriorDeformation.h"
+#include "boneUntangling.h"
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
 #include "boneQualityMeasures.h"

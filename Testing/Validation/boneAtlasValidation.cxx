@@ -9,6 +9,7 @@
 //   boneAtlasValidation memory MESH.vtu SUBJECTS                                 large training sets
 
 #include "boneAtlasRegistration.h"
+#include "boneDirectedSurface.h"
 #include "boneBuildPipeline.h"
 #include "boneHemipelvisPhantom.h"
 #include "boneMeshIO.h"
@@ -116,7 +117,7 @@ PrintModes(const char * name, const std::vector<ModelQuality> & quality)
 }
 
 void
-Registration(const std::vector<std::string> & files, const RegistrationParameters & parameters, bool evaluate)
+Registration(const std::vector<std::string> & files, const AtlasRegistrationParameters & parameters, bool evaluate)
 {
   const StandardModel               model(ReadMeshArrays(files[0]));
   const DirectedSurface             reference(ReadTriangleSurface(files[1]));
@@ -454,7 +455,7 @@ main(int argc, char ** argv)
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try
   {
-    RegistrationParameters parameters;
+    AtlasRegistrationParameters parameters;
     if (argc > 4 && arguments[0] == "registration")
     {
       Registration({ arguments.begin() + 1, arguments.end() }, parameters, argc > 7);

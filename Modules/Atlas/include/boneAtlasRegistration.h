@@ -4,42 +4,15 @@
 #ifndef boneAtlasRegistration_h
 #define boneAtlasRegistration_h
 
-#include "boneInteriorDeformation.h"
-#include "boneSurfaceAlignment.h"
-#include "boneSurfaceDeformation.h"
+#include "boneTriangleSurface.h"
+#include "boneUntangling.h"
 
-#include <functional>
+#include <memory>
 
 namespace bone
 {
-/** How the exterior surface is deformed. */
-enum class DeformationMethod : int
-{
-  AdaptiveFocus = 0, ///< the paper's
-  NonRigidICP = 1    ///< optimal-step non-rigid ICP, for comparison
-};
-
-/** Whether a subject may be the mirror image of the standard model (a left bone of a right one). */
-enum class MirrorMode : int
-{
-  Never = 0,
-  Always = 1,
-  Try = 2 ///< both are aligned; the nearer one is taken
-};
-
-/** Parameters of \ref StandardModel::Register. */
-struct RegistrationParameters
-{
-  SurfaceAlignmentParameters alignment;
-  MirrorMode                 mirror{ MirrorMode::Never };
-  DeformationMethod          method{ DeformationMethod::AdaptiveFocus };
-  AdaptiveFocusParameters    focus;
-  NonRigidICPParameters      nonRigid;
-  FacetFitParameters         facets;                                   ///< after the deformation
-  FacetFitParameters         layers{ { 8, 4, 2, 1, 0, 0 }, 4.0, 5.0 }; ///< of the surfaces between layers
-  InteriorRule               interior{ InteriorRule::Harmonic };
-  UntanglingParameters       untangling;
-};
+class InteriorDeformation;
+struct RegistrationParameters;
 
 /** What a registration did. */
 struct RegistrationReport
@@ -80,6 +53,7 @@ public:
   /** Takes points, tetrahedra, regions and neighbours (computed where absent). Throws std::invalid_argument where there
    * are no tetrahedra, or flat or inverted ones. */
   explicit StandardModel(const MeshArrays & mesh);
+  ~StandardModel();
 
   /** The mesh's points on the subject, and what was done. Surfaces between layers are laid on the subject's where it
    * gives them; else interior points follow the exterior. Throws std::invalid_argument where the subject has no
@@ -87,9 +61,9 @@ public:
   std::vector<Vector3>
   Register(
     const SubjectSurfaces &             subject,
-    const RegistrationParameters &      parameters,
+    const AtlasRegistrationParameters & parameters,
     RegistrationReport &                report,
-    const std::function<void(double)> & progress = [](double) {}) const;
+    const Execution &                   execution = {}) const;
 
   const TriangleSurface &
   GetSurface() const
@@ -117,7 +91,8 @@ private:
             const RegistrationParameters &       parameters,
             const AffineMap &                    alignment,
             std::vector<Vector3> &               points,
-            RegistrationReport &                 report) const;
+            RegistrationReport &                 report,
+            const Execution &                    execution) const;
 
   MeshArrays                           m_Mesh;
   std::vector<IdType>                  m_SurfaceId;

@@ -6,8 +6,8 @@
 
 #include "boneAtlasRegistration.h"
 #include "boneDensityMesh.h"
+#include "boneMeshSource.h"
 
-#include <itkProcessObject.h>
 #include <itkSimpleDataObjectDecorator.h>
 
 namespace bone
@@ -19,10 +19,11 @@ namespace bone
  * surfaces between layers are taken, or a closed surface (SetSubjectSurface). Output: the standard model's tetrahedra,
  * layers, slices and regions on points that lie on the subject; no density, which is fitted after (DensityFitFilter).
  *
- * 1. Alignment by principal axes and iterative closest points, affine by default (\ref AlignSurfaces).
- * 2. The exterior surface is deformed: adaptive focus (default, \ref DeformAdaptiveFocus) or non-rigid ICP
- *    (\ref DeformNonRigidICP), then its facets are laid on the subject (\ref FitFacets).
- * 3. Interior points follow: a harmonic displacement (default) or the paper's eigen-frames (\ref InteriorDeformation).
+ * 1. Alignment by principal axes and iterative closest points, affine by default.
+ * 2. The exterior surface is deformed: adaptive focus (D. Shen et al.,
+ *    doi:10.1109/42.921475; default) or non-rigid ICP,
+ *    then its facets are laid on the subject.
+ * 3. Interior points follow: a harmonic displacement (default) or the paper's eigen-frames.
  *    Then the surfaces between layers are laid on the subject's, if it is a layered mesh and FitLayers is on (default).
  * 4. Inverted tetrahedra are repaired within bounds (\ref UntangleMesh). If some are left, the filter throws and says
  *    how many: no inverted tetrahedron leaves it.
@@ -30,18 +31,18 @@ namespace bone
  * Mirror: Never (default), Always, or Try: the subject is reflected at x = 0 first, and the output lies in the
  * reflected space (GetReport().mirrored); ReflectPoints brings points back.
  *
- * Results do not depend on the number of threads. Throws itk::ExceptionObject. */
+ * Parameters: \ref AtlasRegistrationParameters. Results do not depend on the number of threads. Throws itk::ExceptionObject. */
 template <typename TMesh = DensityMesh<double>>
-class AtlasRegistrationFilter : public itk::ProcessObject
+class AtlasRegistrationFilter : public MeshSource<TMesh>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(AtlasRegistrationFilter);
   using Self = AtlasRegistrationFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshSource<TMesh>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(AtlasRegistrationFilter, itk::ProcessObject);
+  itkTypeMacro(AtlasRegistrationFilter, MeshSource);
 
   using MeshType = TMesh;
   using SurfaceType = itk::SimpleDataObjectDecorator<TriangleSurface>;
@@ -55,26 +56,8 @@ public:
   void
   SetSubjectSurface(const TriangleSurface & surface);
 
-  TMesh *
-  GetOutput();
-  const TMesh *
-  GetOutput() const;
+  BONE_FILTER_PARAMETERS(AtlasRegistrationParameters, BONE_ATLAS_REGISTRATION_PARAMETERS)
 
-  itkSetEnumMacro(Alignment, AlignmentKind);
-  itkGetEnumMacro(Alignment, AlignmentKind);
-  itkSetEnumMacro(Mirror, MirrorMode);
-  itkGetEnumMacro(Mirror, MirrorMode);
-  itkSetEnumMacro(Method, DeformationMethod);
-  itkGetEnumMacro(Method, DeformationMethod);
-  itkSetEnumMacro(Interior, InteriorRule);
-  itkGetEnumMacro(Interior, InteriorRule);
-  /** Whether surfaces between layers are laid on the subject's; default true. */
-  itkSetMacro(FitLayers, bool);
-  itkGetConstMacro(FitLayers, bool);
-  itkBooleanMacro(FitLayers);
-  /** How far the repair may move exterior points, mm; default 0.5. */
-  itkSetMacro(ExteriorBound, double);
-  itkGetConstMacro(ExteriorBound, double);
   /** What the last run did. */
   const RegistrationReport &
   GetReport() const
@@ -82,15 +65,11 @@ public:
     return m_Report;
   }
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
-
 protected:
   AtlasRegistrationFilter();
   ~AtlasRegistrationFilter() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateOutputInformation() override
   {}
@@ -103,12 +82,6 @@ private:
   SubjectSurfaces
   TakeSubject() const;
 
-  AlignmentKind                  m_Alignment{ AlignmentKind::Affine };
-  MirrorMode                     m_Mirror{ MirrorMode::Never };
-  DeformationMethod              m_Method{ DeformationMethod::AdaptiveFocus };
-  InteriorRule                   m_Interior{ InteriorRule::Harmonic };
-  bool                           m_FitLayers{ true };
-  double                         m_ExteriorBound{ 0.5 };
   RegistrationReport             m_Report;
   std::unique_ptr<StandardModel> m_Standard; // of the standard it was made of, for a population of subjects
   itk::ModifiedTimeType          m_StandardTime{ 0 };

@@ -14,15 +14,6 @@ AtlasRegistrationFilter<TMesh>::AtlasRegistrationFilter()
   this->AddRequiredInputName("Standard");
   this->AddOptionalInputName("Subject");
   this->AddOptionalInputName("SubjectSurface");
-  this->SetNumberOfRequiredOutputs(1);
-  this->SetNthOutput(0, this->MakeOutput(0));
-}
-
-template <typename TMesh>
-itk::DataObject::Pointer
-AtlasRegistrationFilter<TMesh>::MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType)
-{
-  return TMesh::New().GetPointer();
 }
 
 template <typename TMesh>
@@ -50,35 +41,18 @@ AtlasRegistrationFilter<TMesh>::SetSubjectSurface(const TriangleSurface & surfac
 }
 
 template <typename TMesh>
-TMesh *
-AtlasRegistrationFilter<TMesh>::GetOutput()
-{
-  return itkDynamicCastInDebugMode<TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TMesh>
-const TMesh *
-AtlasRegistrationFilter<TMesh>::GetOutput() const
-{
-  return itkDynamicCastInDebugMode<const TMesh *>(this->GetPrimaryOutput());
-}
-
-template <typename TMesh>
 void
-AtlasRegistrationFilter<TMesh>::VerifyPreconditions() ITKv5_CONST
+AtlasRegistrationFilter<TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
+  this->VerifyParameters();
   if (this->GetSubject() == nullptr && this->ProcessObject::GetInput("SubjectSurface") == nullptr)
   {
-    itkExceptionMacro("Give the subject as a mesh or as a surface.");
+    itkExceptionMacro("The input 'Subject' is missing: give the subject as a mesh or as a surface.");
   }
-  if (m_Alignment == AlignmentKind::None)
+  if (this->GetAlignment() == AlignmentKind::None)
   {
     itkExceptionMacro("Alignment must be Rigid, Similarity or Affine.");
-  }
-  if (!(m_ExteriorBound >= 0))
-  {
-    itkExceptionMacro("ExteriorBound is " << m_ExteriorBound << " mm; it must not be negative.");
   }
 }
 
@@ -91,7 +65,7 @@ AtlasRegistrationFilter<TMesh>::TakeSubject() const
     return { static_cast<const SurfaceType *>(this->ProcessObject::GetInput("SubjectSurface"))->Get(), {} };
   }
   SubjectSurfaces surfaces = SurfacesOf(this->GetSubject()->GetArrays());
-  if (!m_FitLayers)
+  if (!this->GetFitLayers())
   {
     surfaces.inner.clear();
   }
@@ -102,13 +76,7 @@ template <typename TMesh>
 void
 AtlasRegistrationFilter<TMesh>::GenerateData()
 {
-  const TMesh *          standard = this->GetStandard();
-  RegistrationParameters parameters;
-  parameters.alignment.kind = m_Alignment;
-  parameters.mirror = m_Mirror;
-  parameters.method = m_Method;
-  parameters.interior = m_Interior;
-  parameters.untangling.exteriorBound = m_ExteriorBound;
+  const TMesh * standard = this->GetStandard();
   MeshArrays arrays = standard->GetArrays();
   try
   {
@@ -117,13 +85,7 @@ AtlasRegistrationFilter<TMesh>::GenerateData()
       m_Standard = std::make_unique<StandardModel>(arrays);
       m_StandardTime = standard->GetMTime();
     }
-    arrays.points = m_Standard->Register(this->TakeSubject(), parameters, m_Report, [this](double done) {
-      this->UpdateProgress(static_cast<float>(done));
-      if (this->GetAbortGenerateData())
-      {
-        throw itk::ProcessAborted(__FILE__, __LINE__);
-      }
-    });
+    arrays.points = m_Standard->Register(this->TakeSubject(), this->GetParameters(), m_Report, Execution(this));
   }
   catch (const std::logic_error & error)
   {
@@ -145,12 +107,7 @@ void
 AtlasRegistrationFilter<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "Alignment: " << static_cast<int>(m_Alignment) << std::endl;
-  os << indent << "Mirror: " << static_cast<int>(m_Mirror) << std::endl;
-  os << indent << "Method: " << static_cast<int>(m_Method) << std::endl;
-  os << indent << "Interior: " << static_cast<int>(m_Interior) << std::endl;
-  os << indent << "FitLayers: " << (m_FitLayers ? "On" : "Off") << std::endl;
-  os << indent << "ExteriorBound: " << m_ExteriorBound << std::endl;
+  PrintParameters(os, indent, this->GetParameters());
 }
 } // namespace bone
 

@@ -4,27 +4,13 @@
 #ifndef boneModelTraining_h
 #define boneModelTraining_h
 
-#include "boneGramAnalysis.h"
-#include "bonePointAlignment.h"
+#include "boneExecution.h"
 #include "boneStatisticalModel.h"
+#include "boneStatisticalModelParameters.h"
 #include "boneTrainingSet.h"
 
 namespace bone
 {
-/** Parameters of \ref TrainModel; see \ref StatisticalModelEstimator. */
-struct TrainingParameters
-{
-  AlignmentKind alignment{ AlignmentKind::Rigid };
-  double        proportion{ 0.98 };
-  int           maximumModes{ 0 };
-  bool          combined{ false };
-  bool          volumeWeighted{ false };
-  double        withinCellWeight{ 0.25 };
-  double        outlierThreshold{ 3.5 };
-  bool          rejectOutliers{ false };
-  std::size_t   blockBytes{ std::size_t(1) << 30 };
-};
-
 /** How far each subject is from the mean. */
 struct SubjectDeviation
 {
@@ -44,12 +30,11 @@ struct TrainingResult
   std::vector<SubjectDeviation> subjects;
 };
 
-/** The kernel of \ref StatisticalModelEstimator. `progress` is called with 0..1. Throws itk::ExceptionObject. */
+/** The kernel of \ref StatisticalModelEstimator. Throws itk::ExceptionObject. */
 TrainingResult
-TrainModel(
-  const TrainingSet &                 set,
-  const TrainingParameters &          parameters,
-  const std::function<void(double)> & progress = [](double) {});
+TrainModel(const TrainingSet &                set,
+           const StatisticalModelParameters & parameters,
+           const Execution &                  execution = {});
 
 /** Modified z-scores 0.6745 (x - median) / median |x - median| (Iglewicz & Hoaglin 1993); 0 where all are equal. */
 std::vector<double>

@@ -4,21 +4,13 @@
 #ifndef bonePointAlignment_h
 #define bonePointAlignment_h
 
+#include "boneAlignmentKind.h"
 #include "boneTypes.h"
 
 #include <vector>
 
 namespace bone
 {
-/** Which transforms an alignment may use. Numbers grow with freedom. */
-enum class AlignmentKind : int
-{
-  None = 0,
-  Rigid = 1,
-  Similarity = 2, ///< and a size
-  Affine = 3
-};
-
 /** x -> linear x + translation, mm. */
 struct AffineMap
 {

@@ -13,32 +13,26 @@ namespace bone
 /** \class StatisticalModelEstimator
  * \brief Mean and modes of variation of shape and density of a training set (paper 6.2).
  *
- * Input: a \ref TrainingSet of meshes on one topology with density of one degree and quantity, or none; SetInput of
- * meshes is AddSubject of \ref MeshTrainingSet. Output: \ref StatisticalModel.
+ * Inputs: subjects on one topology with density of one degree and quantity, or none. Either meshes, each an input of the
+ * pipeline (AddSubject): they are updated with the estimator, which runs again where one of them has changed; or
+ * "TrainingSet" (SetInput), which gives out its subjects one at a time, for populations that do not fit in memory.
+ * Output: \ref StatisticalModel.
  *
- * Shapes are brought together by generalised Procrustes analysis (\ref AlignShapes), in the mean of the subjects' own
- * frames. Principal modes of the stacked coordinates and, apart from them, of the stacked Bernstein coefficients come
- * from the matrix of inner products between subjects, in double (\ref AnalyzeVectors). Subjects' densities are read in
- * turn; only shapes, a block of densities and the modes are in memory.
+ * Shapes are brought together by generalised Procrustes analysis, in the mean of the subjects' own frames. Principal
+ * modes of the stacked coordinates and, apart from them, of the stacked Bernstein coefficients come from the matrix of
+ * inner products between subjects, in double. Subjects' densities are read one after the other; only shapes, a block of
+ * densities and the modes are in memory.
  *
- * Parameters:
- * - Alignment: None, Rigid (default) or Similarity, which takes size out of the shape modes.
- * - VarianceProportion: the modes kept explain at least this share of the variance of shape, and of density; 0..1,
- *   default 0.98; 1 keeps full rank.
- * - MaximumModes: of each; default 0, no limit.
- * - Combined: also Cootes' combined model of both; default off, as in the paper.
- * - VolumeWeighted: inner product of densities by their integral over the mean mesh, so that cells count by their
- * volume and modes are those of the density as a function, whatever its degree; default off: each coefficient counts
- * alike, as in the paper.
- * - WithinCellWeight: with VolumeWeighted, how much the density's variation within a cell counts against its mean
- * there; above 0, at most 1, which makes the product the integral itself; default 0.25, as most of it is the scanner's
- * blur at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
- * - OutlierThreshold: modified z-score of a subject's distance to the mean, in shape or density, above which it is
- * called an outlier; default 3.5, 0: none are. RejectOutliers: train again without them; default off.
- * - BlockBytes: memory for densities held at once; default 1 GiB. Does not change results beyond rounding.
+ * Parameters: \ref StatisticalModelParameters. With Combined there is Cootes' combined model of both too. With
+ * VolumeWeighted the inner product of densities is their integral over the mean mesh, so that cells count by their
+ * volume and modes are those of the density as a function, whatever its degree; else each coefficient counts alike, as
+ * in the paper. WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur at
+ * the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
  *
  * Results do not depend on the number of threads. Throws itk::ExceptionObject where there are fewer than two subjects,
- * one has another topology, degree or quantity than the first, or a parameter is out of range. */
+ * one has another topology, degree or quantity than the first, or a parameter is out of range.
+ *
+ * \tparam TMesh a \ref DensityMesh, of double or float coordinates */
 template <typename TMesh = DensityMesh<double>>
 class StatisticalModelEstimator : public itk::ProcessObject
 {
@@ -53,37 +47,34 @@ public:
 
   using MeshType = TMesh;
 
+  /** Adds a mesh to the subjects. Not together with a training set. */
+  void
+  AddSubject(const std::string & name, const TMesh * mesh);
+  void
+  RemoveSubjects();
+  std::size_t
+  GetNumberOfSubjects() const
+  {
+    return m_Names.size();
+  }
+
   using Superclass::SetInput;
   void
-  SetInput(const TrainingSet * set);
+  SetInput(const TrainingSet * set)
+  {
+    this->SetPrimaryInput(const_cast<TrainingSet *>(set));
+  }
   const TrainingSet *
-  GetInput() const;
+  GetInput() const
+  {
+    return itkDynamicCastInDebugMode<const TrainingSet *>(this->GetPrimaryInput());
+  }
   StatisticalModel *
   GetOutput();
   const StatisticalModel *
   GetOutput() const;
 
-  itkSetEnumMacro(Alignment, AlignmentKind);
-  itkGetEnumMacro(Alignment, AlignmentKind);
-  itkSetMacro(VarianceProportion, double);
-  itkGetConstMacro(VarianceProportion, double);
-  itkSetMacro(MaximumModes, int);
-  itkGetConstMacro(MaximumModes, int);
-  itkSetMacro(Combined, bool);
-  itkGetConstMacro(Combined, bool);
-  itkBooleanMacro(Combined);
-  itkSetMacro(VolumeWeighted, bool);
-  itkGetConstMacro(VolumeWeighted, bool);
-  itkBooleanMacro(VolumeWeighted);
-  itkSetMacro(WithinCellWeight, double);
-  itkGetConstMacro(WithinCellWeight, double);
-  itkSetMacro(OutlierThreshold, double);
-  itkGetConstMacro(OutlierThreshold, double);
-  itkSetMacro(RejectOutliers, bool);
-  itkGetConstMacro(RejectOutliers, bool);
-  itkBooleanMacro(RejectOutliers);
-  itkSetMacro(BlockBytes, std::size_t);
-  itkGetConstMacro(BlockBytes, std::size_t);
+  BONE_FILTER_PARAMETERS(StatisticalModelParameters, BONE_STATISTICAL_MODEL_PARAMETERS)
 
   /** After an update: each subject's distance to the mean, and who is an outlier. */
   const std::vector<SubjectDeviation> &
@@ -100,7 +91,7 @@ protected:
   StatisticalModelEstimator();
   ~StatisticalModelEstimator() override = default;
   void
-  VerifyPreconditions() ITKv5_CONST override;
+  VerifyPreconditions() const override;
   void
   GenerateOutputInformation() override
   {}
@@ -110,15 +101,14 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  AlignmentKind                 m_Alignment{ AlignmentKind::Rigid };
-  double                        m_VarianceProportion{ 0.98 };
-  int                           m_MaximumModes{ 0 };
-  bool                          m_Combined{ false };
-  bool                          m_VolumeWeighted{ false };
-  double                        m_WithinCellWeight{ 0.25 };
-  double                        m_OutlierThreshold{ 3.5 };
-  bool                          m_RejectOutliers{ false };
-  std::size_t                   m_BlockBytes{ std::size_t(1) << 30 };
+  /** The name of the input of subject i, counted from 0. */
+  static std::string
+  InputName(std::size_t i)
+  {
+    return "Subject" + std::to_string(i + 1);
+  }
+
+  std::vector<std::string>      m_Names;
   std::vector<SubjectDeviation> m_Deviations;
 };
 

@@ -11,7 +11,8 @@ namespace bone
 template <typename TMesh>
 StatisticalModelEstimator<TMesh>::StatisticalModelEstimator()
 {
-  this->SetNumberOfRequiredInputs(1);
+  this->SetPrimaryInputName("TrainingSet");
+  this->RemoveRequiredInputName("TrainingSet");
   this->SetNumberOfRequiredOutputs(1);
   this->SetNthOutput(0, this->MakeOutput(0));
 }
@@ -25,16 +26,23 @@ StatisticalModelEstimator<TMesh>::MakeOutput(itk::ProcessObject::DataObjectPoint
 
 template <typename TMesh>
 void
-StatisticalModelEstimator<TMesh>::SetInput(const TrainingSet * set)
+StatisticalModelEstimator<TMesh>::AddSubject(const std::string & name, const TMesh * mesh)
 {
-  this->SetNthInput(0, const_cast<TrainingSet *>(set));
+  this->itk::ProcessObject::SetInput(InputName(m_Names.size()), const_cast<TMesh *>(mesh));
+  m_Names.push_back(name);
+  this->Modified();
 }
 
 template <typename TMesh>
-const TrainingSet *
-StatisticalModelEstimator<TMesh>::GetInput() const
+void
+StatisticalModelEstimator<TMesh>::RemoveSubjects()
 {
-  return itkDynamicCastInDebugMode<const TrainingSet *>(this->GetPrimaryInput());
+  for (std::size_t i = 0; i < m_Names.size(); ++i)
+  {
+    this->RemoveInput(InputName(i));
+  }
+  m_Names.clear();
+  this->Modified();
 }
 
 template <typename TMesh>
@@ -53,28 +61,17 @@ StatisticalModelEstimator<TMesh>::GetOutput() const
 
 template <typename TMesh>
 void
-StatisticalModelEstimator<TMesh>::VerifyPreconditions() ITKv5_CONST
+StatisticalModelEstimator<TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
-  if (m_Alignment == AlignmentKind::Affine)
+  this->VerifyParameters();
+  if (this->GetAlignment() == AlignmentKind::Affine)
   {
     itkExceptionMacro("Alignment must be None, Rigid or Similarity: an affine one would take the shape's modes away.");
   }
-  if (!(m_VarianceProportion > 0 && m_VarianceProportion <= 1))
+  if ((this->GetInput() == nullptr) == m_Names.empty())
   {
-    itkExceptionMacro("VarianceProportion is " << m_VarianceProportion << "; it must be above 0 and at most 1.");
-  }
-  if (!(m_WithinCellWeight > 0 && m_WithinCellWeight <= 1))
-  {
-    itkExceptionMacro("WithinCellWeight is " << m_WithinCellWeight << "; it must be above 0 and at most 1.");
-  }
-  if (m_MaximumModes < 0)
-  {
-    itkExceptionMacro("MaximumModes is " << m_MaximumModes << "; it must not be negative.");
-  }
-  if (!(m_OutlierThreshold >= 0))
-  {
-    itkExceptionMacro("OutlierThreshold is " << m_OutlierThreshold << "; it must not be negative.");
+    itkExceptionMacro("The inputs must be either subjects (AddSubject) or a 'TrainingSet', and not both.");
   }
 }
 
@@ -82,23 +79,18 @@ template <typename TMesh>
 void
 StatisticalModelEstimator<TMesh>::GenerateData()
 {
-  TrainingParameters parameters;
-  parameters.alignment = m_Alignment;
-  parameters.proportion = m_VarianceProportion;
-  parameters.maximumModes = m_MaximumModes;
-  parameters.combined = m_Combined;
-  parameters.volumeWeighted = m_VolumeWeighted;
-  parameters.withinCellWeight = m_WithinCellWeight;
-  parameters.outlierThreshold = m_OutlierThreshold;
-  parameters.rejectOutliers = m_RejectOutliers;
-  parameters.blockBytes = m_BlockBytes;
-  TrainingResult result = TrainModel(*this->GetInput(), parameters, [this](double done) {
-    this->UpdateProgress(static_cast<float>(done));
-    if (this->GetAbortGenerateData())
+  TrainingSet::ConstPointer set = this->GetInput();
+  if (set.IsNull())
+  {
+    auto subjects = MeshTrainingSet<TMesh>::New();
+    for (std::size_t i = 0; i < m_Names.size(); ++i)
     {
-      throw itk::ProcessAborted(__FILE__, __LINE__);
+      subjects->AddSubject(m_Names[i],
+                           static_cast<const TMesh *>(this->itk::ProcessObject::GetInput(InputName(i))));
     }
-  });
+    set = subjects.GetPointer();
+  }
+  TrainingResult result = TrainModel(*set, this->GetParameters(), Execution(this));
   m_Deviations = std::move(result.subjects);
   this->GetOutput()->SetContent(std::move(result.content));
 }
@@ -108,15 +100,8 @@ void
 StatisticalModelEstimator<TMesh>::PrintSelf(std::ostream & os, itk::Indent indent) const
 {
   Superclass::PrintSelf(os, indent);
-  os << indent << "Alignment: " << static_cast<int>(m_Alignment) << std::endl;
-  os << indent << "VarianceProportion: " << m_VarianceProportion << std::endl;
-  os << indent << "MaximumModes: " << m_MaximumModes << std::endl;
-  os << indent << "Combined: " << m_Combined << std::endl;
-  os << indent << "VolumeWeighted: " << m_VolumeWeighted << std::endl;
-  os << indent << "WithinCellWeight: " << m_WithinCellWeight << std::endl;
-  os << indent << "OutlierThreshold: " << m_OutlierThreshold << std::endl;
-  os << indent << "RejectOutliers: " << m_RejectOutliers << std::endl;
-  os << indent << "BlockBytes: " << m_BlockBytes << std::endl;
+  PrintParameters(os, indent, this->GetParameters());
+  os << indent << "Subjects: " << m_Names.size() << '\n';
 }
 } // namespace bone
 

@@ -3,7 +3,9 @@
  *=========================================================================*/
 #include "boneAtlasRegistration.h"
 
-#include "boneParallelLoop.h"
+#include "boneInteriorDeformation.h"
+#include "boneRegistrationParameters.h"
+
 #include "boneQualityMeasures.h"
 
 #include <algorithm>
@@ -56,11 +58,10 @@ TakeStandard(const MeshArrays & mesh)
 }
 
 double
-MeanDistance(const std::vector<Vector3> & points, const DirectedSurface & surface)
+MeanDistance(const std::vector<Vector3> & points, const DirectedSurface & surface, const Execution & execution)
 {
   std::vector<double> distance(points.size());
-  ParallelLoop(
-    points.size(), 64, [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); });
+  execution.Silent().For(points.size(), [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); }, 64);
   double sum = 0;
   for (const double d : distance)
   {
@@ -120,12 +121,15 @@ StandardModel::StandardModel(const MeshArrays & mesh)
   }
 }
 
+StandardModel::~StandardModel() = default;
+
 void
 StandardModel::FitLayers(const std::vector<TriangleSurface> & target,
                          const RegistrationParameters &       parameters,
                          const AffineMap &                    alignment,
                          std::vector<Vector3> &               points,
-                         RegistrationReport &                 report) const
+                         RegistrationReport &                 report,
+                         const Execution &                    execution) const
 {
   bool any = false;
   for (std::size_t k = 0; k < m_Layers.size(); ++k)
@@ -139,8 +143,8 @@ StandardModel::FitLayers(const std::vector<TriangleSurface> & target,
       {
         moved.points[i] = points[m_Layers[k].id[i]];
       }
-      FitFacets(moved, there, parameters.layers, m_Layers[k].exterior);
-      report.layerDistance.back() = MeanDistance(moved.points, there);
+      FitFacets(moved, there, parameters.layers, m_Layers[k].exterior, execution);
+      report.layerDistance.back() = MeanDistance(moved.points, there, execution);
       for (std::size_t i = 0; i < moved.points.size(); ++i)
       {
         points[m_Layers[k].id[i]] = moved.points[i];
@@ -161,10 +165,11 @@ StandardModel::FitLayers(const std::vector<TriangleSurface> & target,
 
 std::vector<Vector3>
 StandardModel::Register(const SubjectSurfaces &             subjects,
-                        const RegistrationParameters &      parameters,
+                        const AtlasRegistrationParameters & given,
                         RegistrationReport &                report,
-                        const std::function<void(double)> & progress) const
+                        const Execution &                   execution) const
 {
+  const RegistrationParameters parameters(given);
   const TriangleSurface & subject = subjects.exterior;
   if (subject.triangles.empty())
   {
@@ -176,12 +181,12 @@ StandardModel::Register(const SubjectSurfaces &             subjects,
   if (parameters.mirror != MirrorMode::Always)
   {
     target = std::make_unique<DirectedSurface>(subject);
-    aligned = AlignSurfaces(m_Surface, *target, parameters.alignment);
+    aligned = AlignSurfaces(m_Surface, *target, parameters.surfaceAlignment, execution.Part(0.0, 0.15));
   }
   if (parameters.mirror != MirrorMode::Never)
   {
     auto       reflected = std::make_unique<DirectedSurface>(Reflect(subject));
-    const auto mirrored = AlignSurfaces(m_Surface, *reflected, parameters.alignment);
+    const auto mirrored = AlignSurfaces(m_Surface, *reflected, parameters.surfaceAlignment, execution.Part(0.15, 0.3));
     if (target == nullptr || mirrored.distance < aligned.distance)
     {
       target = std::move(reflected);
@@ -191,24 +196,24 @@ StandardModel::Register(const SubjectSurfaces &             subjects,
   }
   report.alignment = aligned.map;
   report.alignmentDistance = aligned.distance;
-  progress(0.3);
+  execution.Report(0.3);
   TriangleSurface moved = m_Surface;
   for (Vector3 & x : moved.points)
   {
     x = aligned.map(x);
   }
   moved.points = parameters.method == DeformationMethod::AdaptiveFocus
-                   ? DeformAdaptiveFocus(moved, *target, parameters.focus)
-                   : DeformNonRigidICP(moved, *target, parameters.nonRigid);
-  FitFacets(moved, *target, parameters.facets);
-  progress(0.9);
-  std::vector<Vector3> points = m_Interior->Deform(parameters.interior, aligned.map, moved.points);
+                   ? DeformAdaptiveFocus(moved, *target, parameters.focus, execution.Part(0.3, 0.8))
+                   : DeformNonRigidICP(moved, *target, parameters.nonRigid, execution.Part(0.3, 0.8));
+  FitFacets(moved, *target, parameters.facets, {}, execution);
+  execution.Report(0.83);
+  std::vector<Vector3> points = m_Interior->Deform(parameters.interior, aligned.map, moved.points, execution.Part(0.83, 0.87));
   if (!subjects.inner.empty())
   {
     this->FitLayers(
-      report.mirrored ? ReflectAll(subjects.inner) : subjects.inner, parameters, aligned.map, points, report);
+      report.mirrored ? ReflectAll(subjects.inner) : subjects.inner, parameters, aligned.map, points, report, execution.Part(0.87, 0.9));
   }
-  report.untangling = UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling);
+  report.untangling = UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling, execution.Part(0.9, 1.0));
   if (report.untangling.after > 0)
   {
     std::ostringstream text;
@@ -222,9 +227,8 @@ StandardModel::Register(const SubjectSurfaces &             subjects,
   {
     moved.points[i] = points[m_SurfaceId[i]];
   }
-  report.surfaceDistance = MeanDistance(moved.points, *target);
-  report.subjectDistance = MeanDistance(target->GetSurface().points, DirectedSurface(moved));
-  progress(1.0);
+  report.surfaceDistance = MeanDistance(moved.points, *target, execution);
+  report.subjectDistance = MeanDistance(target->GetSurface().points, DirectedSurface(moved), execution);
   return points;
 }
 } // namespace bone

@@ -1,9 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneSurfaceDeformation.h"
+#include "boneFacetFit.h"
 
-#include "boneParallelLoop.h"
 
 #include <array>
 
@@ -74,10 +73,11 @@ std::vector<double>
 FindMoves(const TriangleSurface &      surface,
           const std::vector<Vector3> & normals,
           const DirectedSurface &      target,
-          double                       reach)
+          double                       reach,
+          const Execution &            execution)
 {
   std::vector<FacetPull> pulls(surface.triangles.size());
-  ParallelLoop(pulls.size(), 64, [&](std::size_t f) { pulls[f] = FindPull(surface, f, normals, target, reach); });
+  execution.Silent().For(pulls.size(), [&](std::size_t f) { pulls[f] = FindPull(surface, f, normals, target, reach); }, 64);
   std::vector<double> move(surface.points.size(), 0.0), weight(surface.points.size(), 0.0);
   for (std::size_t f = 0; f < pulls.size(); ++f)
   {
@@ -118,13 +118,14 @@ void
 FitFacets(TriangleSurface &          surface,
           const DirectedSurface &    target,
           const FacetFitParameters & parameters,
-          const std::vector<char> &  fixed)
+          const std::vector<char> &  fixed,
+          const Execution &          execution)
 {
   const std::vector<Vector3> before = surface.points;
   for (const int averages : parameters.smoothing)
   {
     const std::vector<Vector3> normals = PointNormals(surface);
-    std::vector<double>        move = FindMoves(surface, normals, target, parameters.reach);
+    std::vector<double>        move = FindMoves(surface, normals, target, parameters.reach, execution);
     for (int i = 0; i < averages; ++i)
     {
       AverageOnce(surface, move);

@@ -3,10 +3,10 @@
  *=========================================================================*/
 #include "boneGramAnalysis.h"
 
-#include "boneParallelLoop.h"
+#include "boneSymmetricEigen.h"
+
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <stdexcept>
@@ -21,16 +21,18 @@ constexpr Eigen::Index ColumnTile = 32;    // vectors of a held block that a thr
 constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
 
 void
-InParallel(Eigen::Index count, const std::function<void(Eigen::Index)> & body)
+InParallel(const Execution & execution, Eigen::Index count, const std::function<void(Eigen::Index)> & body)
 {
-  ParallelLoop(static_cast<std::size_t>(count), 1, [&body](std::size_t i) { body(static_cast<Eigen::Index>(i)); });
+  execution.Silent().For(static_cast<std::size_t>(count), [&body](std::size_t i) { body(static_cast<Eigen::Index>(i)); });
 }
 
 /** Calls body(first row, rows) for fixed chunks of all rows. */
 void
-OverRows(Eigen::Index rows, const std::function<void(Eigen::Index, Eigen::Index)> & body)
+OverRows(const Execution &                                      execution,
+         Eigen::Index                                           rows,
+         const std::function<void(Eigen::Index, Eigen::Index)> & body)
 {
-  InParallel((rows + RowChunk - 1) / RowChunk, [&](Eigen::Index chunk) {
+  InParallel(execution, (rows + RowChunk - 1) / RowChunk, [&](Eigen::Index chunk) {
     const Eigen::Index first = chunk * RowChunk;
     body(first, std::min(RowChunk, rows - first));
   });
@@ -96,14 +98,16 @@ private:
 class CentredReader
 {
 public:
-  CentredReader(const VectorSource & source, const PlainProduct & product)
+  CentredReader(const VectorSource & source, const PlainProduct & product, const Execution & execution)
     : m_Source(source)
     , m_Product(product)
+    , m_Execution(execution)
     , m_Mean(Eigen::VectorXd::Zero(source.dimension))
   {
     Eigen::VectorXd y(source.dimension);
     for (Eigen::Index i = 0; i < source.count; ++i)
     {
+      execution.Report(0.2 * static_cast<double>(i) / static_cast<double>(source.count));
       source.load(i, y.data());
       m_Mean += y / static_cast<double>(source.count);
     }
@@ -119,6 +123,7 @@ public:
     Eigen::MatrixXd block(m_Source.dimension, count);
     for (Eigen::Index i = 0; i < count; ++i)
     {
+      m_Execution.ThrowIfAborted();
       m_Source.load(first + i, block.col(i).data());
       block.col(i) -= m_Mean;
     }
@@ -129,21 +134,28 @@ public:
 private:
   const VectorSource & m_Source;
   const PlainProduct & m_Product;
+  Execution            m_Execution;
   Eigen::VectorXd      m_Mean;
 };
 
 void
-InnerProducts(const Eigen::MatrixXd & a, const Eigen::MatrixXd & b, Eigen::Ref<Eigen::MatrixXd> products)
+InnerProducts(const Execution &          execution,
+              const Eigen::MatrixXd &    a,
+              const Eigen::MatrixXd &    b,
+              Eigen::Ref<Eigen::MatrixXd> products)
 {
   const Eigen::Index tiles = (a.cols() + ColumnTile - 1) / ColumnTile;
-  InParallel(tiles, [&](Eigen::Index tile) {
+  InParallel(execution, tiles, [&](Eigen::Index tile) {
     const Eigen::Index first = tile * ColumnTile, count = std::min(ColumnTile, a.cols() - first);
     products.middleRows(first, count).noalias() = a.middleCols(first, count).transpose() * b;
   });
 }
 
 Eigen::MatrixXd
-GramMatrix(const CentredReader & reader, const VectorSource & source, std::size_t blockBytes)
+GramMatrix(const CentredReader & reader,
+           const VectorSource &  source,
+           std::size_t           blockBytes,
+           const Execution &     execution)
 {
   const Eigen::Index n = source.count;
   const auto         fitting =
@@ -152,14 +164,15 @@ GramMatrix(const CentredReader & reader, const VectorSource & source, std::size_
   Eigen::MatrixXd    gram(n, n);
   for (Eigen::Index first = 0; first < n; first += size)
   {
+    execution.Report(static_cast<double>(first) / static_cast<double>(n));
     const Eigen::Index    held = std::min(size, n - first);
     const Eigen::MatrixXd block = reader.Read(first, held);
-    InnerProducts(block, block, gram.block(first, first, held, held));
+    InnerProducts(execution, block, block, gram.block(first, first, held, held));
     for (Eigen::Index next = first + held; next < n; next += Batch)
     {
       const Eigen::Index    count = std::min(Batch, n - next);
       const Eigen::MatrixXd other = reader.Read(next, count);
-      InnerProducts(block, other, gram.block(first, next, held, count));
+      InnerProducts(execution, block, other, gram.block(first, next, held, count));
       gram.block(next, first, count, held) = gram.block(first, next, held, count).transpose();
     }
   }
@@ -183,7 +196,7 @@ CountModes(const Eigen::VectorXd & variances, double total, const GramParameters
 
 /** Makes the columns orthonormal: Q of the Cholesky-QR factorisation, in place. */
 void
-Orthonormalize(Eigen::MatrixXd & modes)
+Orthonormalize(const Execution & execution, Eigen::MatrixXd & modes)
 {
   const Eigen::Index           k = modes.cols(), chunks = (modes.rows() + RowChunk - 1) / RowChunk;
   Eigen::MatrixXd              products = Eigen::MatrixXd::Zero(k, k);
@@ -192,7 +205,7 @@ Orthonormalize(Eigen::MatrixXd & modes)
   for (Eigen::Index first = 0; first < chunks; first += wave)
   {
     const Eigen::Index count = std::min(wave, chunks - first);
-    InParallel(count, [&](Eigen::Index i) {
+    InParallel(execution, count, [&](Eigen::Index i) {
       const Eigen::Index row = (first + i) * RowChunk;
       const auto         rows = modes.middleRows(row, std::min(RowChunk, modes.rows() - row));
       partial[static_cast<std::size_t>(i)] = rows.transpose() * rows;
@@ -203,7 +216,7 @@ Orthonormalize(Eigen::MatrixXd & modes)
     }
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(products);
-  OverRows(modes.rows(), [&](Eigen::Index first, Eigen::Index rows) {
+  OverRows(execution, modes.rows(), [&](Eigen::Index first, Eigen::Index rows) {
     const Eigen::MatrixXd solved = factor.matrixL().solve(modes.middleRows(first, rows).transpose());
     modes.middleRows(first, rows) = solved.transpose();
   });
@@ -231,7 +244,8 @@ AnalyzeVectors(const VectorSource &    source,
                const Eigen::VectorXd & weights,
                const Eigen::MatrixXd & block,
                const GramParameters &  parameters,
-               Eigen::MatrixXd *       scores)
+               Eigen::MatrixXd *       scores,
+               const Execution &       execution)
 {
   const Eigen::Index n = source.count, d = source.dimension;
   if (n < 2 || d < 1)
@@ -239,10 +253,10 @@ AnalyzeVectors(const VectorSource &    source,
     throw std::invalid_argument("Modes of variation need two subjects or more.");
   }
   const PlainProduct    product(weights, block);
-  const CentredReader   reader(source, product);
-  const Eigen::MatrixXd gram = GramMatrix(reader, source, parameters.blockBytes) / static_cast<double>(n - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-  const Eigen::VectorXd                                variances = eigen.eigenvalues().reverse();
+  const CentredReader   reader(source, product, execution);
+  const Eigen::MatrixXd gram = GramMatrix(reader, source, parameters.blockBytes, execution.Part(0.2, 0.7)) / static_cast<double>(n - 1);
+  const SymmetricEigen  eigen = EigenOf(gram);
+  const Eigen::VectorXd variances = eigen.values.reverse();
 
   PrincipalModes result;
   result.mean = reader.Mean();
@@ -251,21 +265,22 @@ AnalyzeVectors(const VectorSource &    source,
   result.totalVariance = gram.trace();
   const Eigen::Index k = CountModes(variances, result.totalVariance, parameters);
   result.variances = variances.head(k);
-  Eigen::MatrixXd vectors = eigen.eigenvectors().rowwise().reverse().leftCols(k);
+  Eigen::MatrixXd vectors = eigen.vectors.rowwise().reverse().leftCols(k);
   result.modes.setZero(d, k);
   const Eigen::VectorXd scale = (static_cast<double>(n - 1) * result.variances).cwiseSqrt().cwiseInverse();
   for (Eigen::Index first = 0; first < n && k > 0; first += Batch)
   {
+    execution.Report(0.7 + 0.3 * static_cast<double>(first) / static_cast<double>(n));
     const Eigen::Index    count = std::min(Batch, n - first);
     const Eigen::MatrixXd batch = reader.Read(first, count);
     const Eigen::MatrixXd parts = vectors.middleRows(first, count) * scale.asDiagonal();
-    OverRows(d, [&](Eigen::Index row, Eigen::Index rows) {
+    OverRows(execution, d, [&](Eigen::Index row, Eigen::Index rows) {
       result.modes.middleRows(row, rows).noalias() += batch.middleRows(row, rows) * parts;
     });
   }
   if (k > 0)
   {
-    Orthonormalize(result.modes);
+    Orthonormalize(execution, result.modes);
   }
   product.From(result.modes);
   FixSigns(result.modes, vectors);

@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneInteriorDeformation.h"
 
-#include "boneParallelLoop.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -125,14 +124,14 @@ InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vec
 InteriorDeformation::~InteriorDeformation() = default;
 
 std::vector<Vector3>
-InteriorDeformation::Deform(InteriorRule rule, const AffineMap & alignment, const std::vector<Vector3> & moved) const
+InteriorDeformation::Deform(InteriorRule rule, const AffineMap & alignment, const std::vector<Vector3> & moved, const Execution & execution) const
 {
   if (moved.size() != m_Exterior.size())
   {
     throw std::invalid_argument("As many exterior points must be given as the standard model has.");
   }
   return rule == InteriorRule::Harmonic ? this->DeformHarmonic(alignment, moved)
-                                        : this->DeformByFrames(alignment, moved);
+                                        : this->DeformByFrames(alignment, moved, execution);
 }
 
 std::vector<Vector3>
@@ -158,14 +157,14 @@ InteriorDeformation::DeformHarmonic(const AffineMap & alignment, const std::vect
 }
 
 std::vector<Vector3>
-InteriorDeformation::DeformByFrames(const AffineMap & alignment, const std::vector<Vector3> & moved) const
+InteriorDeformation::DeformByFrames(const AffineMap & alignment, const std::vector<Vector3> & moved, const Execution & execution) const
 {
   std::vector<Vector3> points(m_Points.size());
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
     points[m_Exterior[i]] = moved[i];
   }
-  ParallelLoop(m_Interior.size(), 64, [&](std::size_t k) {
+  execution.For(m_Interior.size(), [&](std::size_t k) {
     const Vector3            v = m_Points[m_Interior[k]];
     std::vector<std::size_t> ids(m_Exterior.size());
     std::iota(ids.begin(), ids.end(), 0);
@@ -185,7 +184,7 @@ InteriorDeformation::DeformByFrames(const AffineMap & alignment, const std::vect
       }
     }
     points[m_Interior[k]] = now.origin + now.axes * (rest.axes.transpose() * (v - rest.origin));
-  });
+  }, 64);
   return points;
 }
 } // namespace bone

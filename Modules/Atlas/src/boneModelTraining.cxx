@@ -4,10 +4,11 @@
 #include "boneModelTraining.h"
 
 #include "boneBernstein.h"
+#include "boneGramAnalysis.h"
+#include "bonePointAlignment.h"
+#include "boneSymmetricEigen.h"
 
 #include <itkMacro.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <numeric>
@@ -131,8 +132,8 @@ Combine(const StatisticalModelContent & content, double proportion)
   Eigen::MatrixXd both(n, ks + kd);
   both << combined.shapeWeight * content.shapeScores * shape.asDiagonal(), content.densityScores * density.asDiagonal();
   const Eigen::MatrixXd covariance = both.transpose() * both / static_cast<double>(n - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const Eigen::VectorXd                                variances = eigen.eigenvalues().reverse();
+  const SymmetricEigen  eigen = EigenOf(covariance);
+  const Eigen::VectorXd variances = eigen.values.reverse();
   Eigen::Index                                         k = 0;
   double                                               explained = 0;
   while (k < variances.size() && variances[k] > 1e-12 * variances[0] &&
@@ -141,7 +142,7 @@ Combine(const StatisticalModelContent & content, double proportion)
     explained += variances[k++];
   }
   combined.variances = variances.head(k);
-  combined.vectors = eigen.eigenvectors().rowwise().reverse().leftCols(k);
+  combined.vectors = eigen.vectors.rowwise().reverse().leftCols(k);
   return combined;
 }
 
@@ -158,7 +159,7 @@ RootMeanSquare(const double * a, const double * b, std::size_t count, std::size_
 
 /** Reads every subject once: verifies it, takes its shape, and leaves the first one's mesh. */
 MeshArrays
-ReadShapes(const TrainingSet & set, Shapes & shapes, const std::function<void(double)> & progress)
+ReadShapes(const TrainingSet & set, const Execution & execution, Shapes & shapes)
 {
   const std::size_t n = set.GetNumberOfSubjects();
   MeshArrays        first;
@@ -171,7 +172,7 @@ ReadShapes(const TrainingSet & set, Shapes & shapes, const std::function<void(do
     }
     VerifySubject(set, i, mesh, first);
     shapes.push_back(std::move(mesh.points));
-    progress(0.2 * static_cast<double>(i + 1) / static_cast<double>(n));
+    execution.Report(static_cast<double>(i + 1) / static_cast<double>(n));
   }
   return first;
 }
@@ -181,11 +182,13 @@ FindDeviations(const TrainingSet &             set,
                const Shapes &                  shapes,
                const StatisticalModelContent & content,
                double                          threshold,
+               const Execution &               execution,
                std::vector<SubjectDeviation> & subjects)
 {
   std::vector<double> shape, density;
   for (std::size_t i = 0; i < shapes.size(); ++i)
   {
+    execution.Report(static_cast<double>(i) / static_cast<double>(shapes.size()));
     shape.push_back(
       RootMeanSquare(shapes[i].front().data(), content.mean.points.front().data(), 3 * shapes[i].size(), 3));
     if (content.mean.HasDensity())
@@ -215,14 +218,16 @@ AnalyzeSubjects(const TrainingSet &              set,
                 const std::vector<std::size_t> & chosen,
                 const MeshArrays &               topology,
                 Shapes &                         shapes,
-                const TrainingParameters &       parameters)
+                const StatisticalModelParameters & parameters,
+                const Execution &                  execution)
 {
   StatisticalModelContent content;
   content.mean = topology;
   content.similarity = parameters.alignment == AlignmentKind::Similarity;
+  execution.ThrowIfAborted();
   content.mean.points = AlignShapes(shapes, parameters.alignment).mean;
-  GramParameters gram{ parameters.proportion, parameters.maximumModes, parameters.blockBytes };
-  content.shape = AnalyzeVectors(ShapeSource(shapes), {}, {}, gram, &content.shapeScores);
+  GramParameters gram{ parameters.varianceProportion, parameters.maximumModes, parameters.blockBytes };
+  content.shape = AnalyzeVectors(ShapeSource(shapes), {}, {}, gram, &content.shapeScores, execution.Part(0.1, 0.4));
   if (topology.HasDensity())
   {
     const Eigen::VectorXd weights = parameters.volumeWeighted ? VolumeWeights(content.mean) : Eigen::VectorXd();
@@ -231,11 +236,11 @@ AnalyzeSubjects(const TrainingSet &              set,
                                     : Eigen::MatrixXd();
     const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
     content.density =
-      AnalyzeVectors(DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores);
+      AnalyzeVectors(DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores, execution.Part(0.4, 1.0));
     content.mean.coefficients.assign(content.density.mean.data(), content.density.mean.data() + dimension);
     if (parameters.combined && content.density.GetNumberOfModes() > 0 && content.shape.GetNumberOfModes() > 0)
     {
-      content.combined = Combine(content, parameters.proportion);
+      content.combined = Combine(content, parameters.varianceProportion);
     }
   }
   for (const std::size_t i : chosen)
@@ -275,7 +280,7 @@ ModifiedScores(const std::vector<double> & values)
 }
 
 TrainingResult
-TrainModel(const TrainingSet & set, const TrainingParameters & parameters, const std::function<void(double)> & progress)
+TrainModel(const TrainingSet & set, const StatisticalModelParameters & parameters, const Execution & execution)
 {
   if (set.GetNumberOfSubjects() < 2)
   {
@@ -283,7 +288,7 @@ TrainModel(const TrainingSet & set, const TrainingParameters & parameters, const
                                                      << " subjects; modes of variation need two or more.");
   }
   Shapes           shapes;
-  const MeshArrays topology = ReadShapes(set, shapes, progress);
+  const MeshArrays topology = ReadShapes(set, execution.Part(0.0, 0.15), shapes);
   if (parameters.combined && !topology.HasDensity())
   {
     itkGenericExceptionMacro("A combined model was asked for, but the subjects have no density.");
@@ -291,10 +296,8 @@ TrainModel(const TrainingSet & set, const TrainingParameters & parameters, const
   TrainingResult           result;
   std::vector<std::size_t> chosen(shapes.size());
   std::iota(chosen.begin(), chosen.end(), 0);
-  result.content = AnalyzeSubjects(set, chosen, topology, shapes, parameters);
-  progress(0.7);
-  FindDeviations(set, shapes, result.content, parameters.outlierThreshold, result.subjects);
-  progress(0.8);
+  result.content = AnalyzeSubjects(set, chosen, topology, shapes, parameters, execution.Part(0.15, 0.65));
+  FindDeviations(set, shapes, result.content, parameters.outlierThreshold, execution.Part(0.65, 0.75), result.subjects);
   if (parameters.rejectOutliers)
   {
     Shapes kept;
@@ -314,10 +317,9 @@ TrainModel(const TrainingSet & set, const TrainingParameters & parameters, const
     }
     if (chosen.size() < shapes.size())
     {
-      result.content = AnalyzeSubjects(set, chosen, topology, kept, parameters);
+      result.content = AnalyzeSubjects(set, chosen, topology, kept, parameters, execution.Part(0.75, 1.0));
     }
   }
-  progress(1.0);
   return result;
 }
 } // namespace bone

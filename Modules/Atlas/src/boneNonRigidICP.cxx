@@ -1,8 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneParallelLoop.h"
-#include "boneSurfaceDeformation.h"
+#include "boneNonRigidICP.h"
 
 #include <Eigen/SparseCholesky>
 
@@ -115,26 +114,29 @@ private:
 std::vector<Vector3>
 DeformNonRigidICP(const TriangleSurface &       source,
                   const DirectedSurface &       target,
-                  const NonRigidICPParameters & parameters)
+                  const NonRigidICPParameters & parameters,
+                  const Execution &             execution)
 {
   NonRigidSystem  system(source);
   TriangleSurface now = source;
+  std::size_t     step = 0;
   for (const double stiffness : parameters.stiffness)
   {
+    execution.Report(static_cast<double>(step++) / static_cast<double>(parameters.stiffness.size()));
     double move = parameters.tolerance + 1;
     for (int i = 0; i < parameters.iterations && move > parameters.tolerance; ++i)
     {
       const std::vector<Vector3> normals = PointNormals(now);
       std::vector<Vector3>       places = now.points;
       std::vector<double>        weights(now.points.size(), 0.0);
-      ParallelLoop(now.points.size(), 64, [&](std::size_t v) {
+      execution.Silent().For(now.points.size(), [&](std::size_t v) {
         const auto match = target.Find(now.points[v], normals[v]);
         if (match.triangle >= 0 && normals[v].dot(target.NormalAt(match.triangle, match.point)) > NormalCosine)
         {
           places[v] = match.point;
           weights[v] = 1.0;
         }
-      });
+      }, 64);
       std::vector<Vector3> moved = system.Solve(stiffness, places, weights);
       move = 0;
       for (std::size_t v = 0; v < moved.size(); ++v)

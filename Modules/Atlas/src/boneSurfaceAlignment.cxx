@@ -4,7 +4,6 @@
 #include "boneSurfaceAlignment.h"
 
 #include "boneAcrossFit.h"
-#include "boneParallelLoop.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -120,12 +119,17 @@ FitAcross(const std::vector<Vector3> & from, const std::vector<Vector3> & to, co
 class ClosestPoints
 {
 public:
-  ClosestPoints(const DirectedSurface & source, const DirectedSurface & target, int samples, double trim)
+  ClosestPoints(const DirectedSurface & source,
+                const DirectedSurface & target,
+                int                     samples,
+                double                  trim,
+                const Execution &       execution)
     : m_Source(source)
     , m_Target(target)
     , m_SourceSamples(SampleSurface(source.GetSurface(), samples))
     , m_TargetSamples(SampleSurface(target.GetSurface(), samples))
     , m_Trim(trim)
+    , m_Execution(execution)
   {}
 
   /** Improves the map; returns the root mean square distance of the pairs that count. */
@@ -165,15 +169,15 @@ private:
     // Normals go by the inverse transpose.
     const Eigen::Matrix3d  forward = back.linear.transpose(), backward = map.linear.transpose();
     std::vector<Candidate> found(m_SourceSamples.size() + m_TargetSamples.size(), Candidate());
-    ParallelLoop(m_SourceSamples.size(), Chunk, [&](std::size_t i) {
+    m_Execution.Silent().For(m_SourceSamples.size(), [&](std::size_t i) {
       const Sample & s = m_SourceSamples[i];
       const auto     match = m_Target.Find(map(s.point), forward * s.normal);
       if (match.triangle >= 0)
       {
         found[i] = { match.squaredDistance, s.point, match.point, m_Target.NormalAt(match.triangle, match.point) };
       }
-    });
-    ParallelLoop(m_TargetSamples.size(), Chunk, [&](std::size_t i) {
+    }, Chunk);
+    m_Execution.Silent().For(m_TargetSamples.size(), [&](std::size_t i) {
       const Sample & s = m_TargetSamples[i];
       const auto     match = m_Source.Find(back(s.point), backward * s.normal);
       if (match.triangle >= 0)
@@ -181,7 +185,7 @@ private:
         const double squared = (map(match.point) - s.point).squaredNorm();
         found[m_SourceSamples.size() + i] = { squared, match.point, s.point, s.normal };
       }
-    });
+    }, Chunk);
     std::vector<Candidate> pairs;
     std::copy_if(found.begin(), found.end(), std::back_inserter(pairs), [](const Candidate & c) {
       return c.squaredDistance >= 0;
@@ -206,6 +210,7 @@ private:
   std::vector<Sample>     m_SourceSamples;
   std::vector<Sample>     m_TargetSamples;
   double                  m_Trim;
+  Execution               m_Execution;
 };
 
 /** Rigid maps that bring the principal axes onto each other. */
@@ -228,7 +233,8 @@ Flips(const TriangleSurface & source, const TriangleSurface & target)
 SurfaceAlignmentResult
 AlignSurfaces(const TriangleSurface &            surface,
               const DirectedSurface &            target,
-              const SurfaceAlignmentParameters & parameters)
+              const SurfaceAlignmentParameters & parameters,
+              const Execution &                  execution)
 {
   if (!(parameters.trim > 0 && parameters.trim <= 1) || parameters.samples < 10 || parameters.iterations < 1 ||
       surface.triangles.empty() || target.GetSurface().triangles.empty())
@@ -240,10 +246,11 @@ AlignSurfaces(const TriangleSurface &            surface,
   SurfaceAlignmentResult result;
   if (parameters.principalAxes)
   {
-    const ClosestPoints coarse(source, target, std::min(FlipSamples, parameters.samples), parameters.trim);
+    const ClosestPoints coarse(source, target, std::min(FlipSamples, parameters.samples), parameters.trim, execution);
     double              best = std::numeric_limits<double>::max();
     for (AffineMap map : Flips(surface, target.GetSurface()))
     {
+      execution.Report(0.1);
       const double distance = coarse.Run(map, AlignmentKind::Rigid, FlipIterations);
       if (distance < best)
       {
@@ -252,12 +259,13 @@ AlignSurfaces(const TriangleSurface &            surface,
       }
     }
   }
-  const ClosestPoints fine(source, target, parameters.samples, parameters.trim);
+  const ClosestPoints fine(source, target, parameters.samples, parameters.trim, execution);
   for (const AlignmentKind kind : { AlignmentKind::Rigid, AlignmentKind::Similarity, AlignmentKind::Affine })
   {
     if (kind <= parameters.kind)
     {
       result.distance = fine.Run(result.map, kind, parameters.iterations);
+      execution.Report(0.2 + 0.25 * static_cast<double>(kind));
     }
   }
   return result;

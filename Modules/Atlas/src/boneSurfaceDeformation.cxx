@@ -4,7 +4,6 @@
 #include "boneSurfaceDeformation.h"
 
 #include "boneAcrossFit.h"
-#include "boneParallelLoop.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,10 +36,10 @@ EdgeNeighbors(const TriangleSurface & surface)
 
 /** Sorts each ring of each vertex by the angle around the vertex's normal. */
 void
-SortRings(const TriangleSurface & surface, RingNeighbors & rings)
+SortRings(const TriangleSurface & surface, const Execution & execution, RingNeighbors & rings)
 {
   const std::vector<Vector3> normals = PointNormals(surface);
-  ParallelLoop(surface.points.size(), Chunk, [&](std::size_t v) {
+  execution.Silent().For(surface.points.size(), [&](std::size_t v) {
     Vector3 u = normals[v].unitOrthogonal();
     if (normals[v].isZero())
     {
@@ -57,7 +56,7 @@ SortRings(const TriangleSurface & surface, RingNeighbors & rings)
                        rings.ring[v].begin() + rings.start[v][r + 1],
                        [&](IdType a, IdType b) { return angle(a) < angle(b); });
     }
-  });
+  }, Chunk);
 }
 
 /** A third of the area of the triangles around each point. */
@@ -89,15 +88,18 @@ class FocusDeformation
 public:
   FocusDeformation(const TriangleSurface &         source,
                    const DirectedSurface &         target,
-                   const AdaptiveFocusParameters & parameters)
+                   const AdaptiveFocusParameters & parameters,
+                   const Execution &               execution)
     : m_Source(source)
     , m_Target(target)
     , m_P(parameters)
+    , m_Execution(execution)
     , m_Rings(FindRings(
         source,
-        std::max(parameters.attributeLayers, *std::max_element(parameters.rings.begin(), parameters.rings.end()))))
+        std::max(parameters.attributeLayers, *std::max_element(parameters.rings.begin(), parameters.rings.end())),
+        execution))
     , m_Rest(source.points)
-    , m_RestAttributes(AttributeVectors(source.points, m_Rings, parameters.attributeLayers))
+    , m_RestAttributes(AttributeVectors(source.points, m_Rings, parameters.attributeLayers, execution))
     , m_TargetArea(PointAreas(target.GetSurface()))
     , m_SourceArea(PointAreas(source))
   {
@@ -119,6 +121,8 @@ public:
       for (int i = 0; i < m_P.iterations; ++i)
       {
         this->Step(m_P.rings[stage]);
+        m_Execution.Report((static_cast<double>(stage) + (i + 1.0) / m_P.iterations) /
+                           static_cast<double>(m_P.rings.size()));
       }
     }
     return m_Source.points;
@@ -165,9 +169,9 @@ private:
   {
     const std::size_t          n = m_Rest.size();
     const std::vector<Vector3> normals = PointNormals(m_Source);
-    const Eigen::MatrixXd      attributes = AttributeVectors(m_Source.points, m_Rings, m_P.attributeLayers);
+    const Eigen::MatrixXd      attributes = AttributeVectors(m_Source.points, m_Rings, m_P.attributeLayers, m_Execution);
     Pull                       pull{ std::vector<Vector3>(n), std::vector<double>(n) };
-    ParallelLoop(n, Chunk, [&](std::size_t v) {
+    m_Execution.Silent().For(n, [&](std::size_t v) {
       const auto   match = m_Target.Find(m_Source.points[v], normals[v]);
       const double agreement =
         match.triangle < 0 ? 0.0 : std::max(0.0, normals[v].dot(m_Target.NormalAt(match.triangle, match.point)));
@@ -175,7 +179,7 @@ private:
         (attributes.col(static_cast<Eigen::Index>(v)) - m_RestAttributes.col(static_cast<Eigen::Index>(v))).norm();
       pull.place[v] = match.point;
       pull.weight[v] = agreement * agreement / (1 + 2 * (change / m_P.attributeWidth) * (change / m_P.attributeWidth));
-    });
+    }, Chunk);
     this->AddTargetPull(pull);
     return pull;
   }
@@ -188,9 +192,9 @@ private:
     const auto &                        points = m_Target.GetSurface().points;
     const std::size_t                   stride = std::max<std::size_t>(1, points.size() / m_P.targetPoints);
     std::vector<DirectedSurface::Match> matches(points.size());
-    ParallelLoop(points.size() / stride, Chunk, [&](std::size_t i) {
+    m_Execution.Silent().For(points.size() / stride, [&](std::size_t i) {
       matches[i * stride] = source.Find(points[i * stride], m_Target.GetPointNormals()[i * stride]);
-    });
+    }, Chunk);
     std::vector<Vector3> sum(m_Rest.size(), Vector3::Zero());
     std::vector<double>  weight(m_Rest.size(), 0.0);
     for (std::size_t p = 0; p < points.size(); ++p)
@@ -237,7 +241,7 @@ private:
       terms[v] = AcrossFit::MakeTerm(normals[v], pull.place[v] - m_Rest[v], m_P.slide, pull.weight[v] * m_Focus[v]);
     }
     std::vector<Vector3> moved(m_Rest.size());
-    ParallelLoop(m_Rest.size(), Chunk, [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); });
+    m_Execution.Silent().For(m_Rest.size(), [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); }, Chunk);
     m_Source.points = std::move(moved);
   }
 
@@ -263,6 +267,7 @@ private:
   TriangleSurface                 m_Source; // where it is now
   const DirectedSurface &         m_Target;
   const AdaptiveFocusParameters & m_P;
+  Execution m_Execution;
   RingNeighbors                   m_Rings;
   std::vector<Vector3>            m_Rest;
   Eigen::MatrixXd                 m_RestAttributes;
@@ -273,14 +278,14 @@ private:
 } // namespace
 
 RingNeighbors
-FindRings(const TriangleSurface & surface, int rings)
+FindRings(const TriangleSurface & surface, int rings, const Execution & execution)
 {
   const auto    neighbors = EdgeNeighbors(surface);
   RingNeighbors result;
   result.ring.resize(surface.points.size());
   result.start.resize(surface.points.size());
   constexpr std::size_t Batch = 256; // vertices that share a list of marks
-  ParallelLoop((surface.points.size() + Batch - 1) / Batch, 1, [&](std::size_t batch) {
+  execution.Silent().For((surface.points.size() + Batch - 1) / Batch, [&](std::size_t batch) {
     std::vector<IdType> seen(surface.points.size(), -1);
     for (std::size_t v = batch * Batch; v < std::min(surface.points.size(), (batch + 1) * Batch); ++v)
     {
@@ -306,15 +311,15 @@ FindRings(const TriangleSurface & surface, int rings)
       }
     }
   });
-  SortRings(surface, result);
+  SortRings(surface, execution, result);
   return result;
 }
 
 Eigen::MatrixXd
-AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & rings, int layers)
+AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & rings, int layers, const Execution & execution)
 {
   Eigen::MatrixXd attributes = Eigen::MatrixXd::Zero(layers, static_cast<Eigen::Index>(points.size()));
-  ParallelLoop(points.size(), Chunk, [&](std::size_t v) {
+  execution.Silent().For(points.size(), [&](std::size_t v) {
     auto column = attributes.col(static_cast<Eigen::Index>(v));
     for (int layer = 1; layer <= layers; ++layer)
     {
@@ -332,15 +337,16 @@ AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & ring
     {
       column /= sum;
     }
-  });
+  }, Chunk);
   return attributes;
 }
 
 std::vector<Vector3>
 DeformAdaptiveFocus(const TriangleSurface &         source,
                     const DirectedSurface &         target,
-                    const AdaptiveFocusParameters & parameters)
+                    const AdaptiveFocusParameters & parameters,
+                    const Execution &               execution)
 {
-  return FocusDeformation(source, target, parameters).Run();
+  return FocusDeformation(source, target, parameters, execution).Run();
 }
 } // namespace bone

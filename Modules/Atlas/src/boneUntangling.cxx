@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneInteriorDeformation.h"
+#include "boneUntangling.h"
 
 #include "bonePredicates.h"
 
@@ -55,7 +55,7 @@ public:
   }
 
   UntanglingReport
-  Run()
+  Run(const Execution & execution)
   {
     UntanglingReport report;
     report.before = report.after = this->CountBad(0.0);
@@ -64,10 +64,10 @@ public:
       return report;
     }
     // Exterior points stay where the others can do it alone.
-    this->Work(false);
+    this->Work(false, execution.Part(0.0, 0.5));
     if (m_P.exteriorBound > 0 && this->CountBad(0.0) > 0)
     {
-      this->Work(true);
+      this->Work(true, execution.Part(0.5, 1.0));
     }
     report.after = this->CountBad(0.0);
     for (std::size_t p = 0; p < m_Points.size(); ++p)
@@ -81,16 +81,18 @@ public:
 
 private:
   void
-  Work(bool moveExterior)
+  Work(bool moveExterior, const Execution & execution)
   {
     for (int i = 0; i<m_P.iterations && this->CountBad(m_P.floor)> 0; ++i)
     {
+      execution.Report(static_cast<double>(i) / m_P.iterations);
       const std::vector<IdType> patch = this->Patch();
       this->SetRegularisation();
       for (const IdType p : patch)
       {
         if (moveExterior || m_Exterior[p] == 0)
         {
+          execution.ThrowIfAborted();
           this->Improve(p);
         }
       }
@@ -262,8 +264,9 @@ UntangleMesh(const MeshArrays &           rest,
              const std::vector<IdType> &  exterior,
              const AffineMap &            alignment,
              std::vector<Vector3> &       points,
-             const UntanglingParameters & parameters)
+             const UntanglingParameters & parameters,
+             const Execution &            execution)
 {
-  return Untangler(rest, exterior, alignment, points, parameters).Run();
+  return Untangler(rest, exterior, alignment, points, parameters).Run(execution);
 }
 } // namespace bone

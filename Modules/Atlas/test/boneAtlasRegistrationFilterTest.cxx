@@ -2,6 +2,9 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneAtlasRegistrationFilter.h"
+#include "boneFacetFit.h"
+#include "boneInteriorDeformation.h"
+#include "boneSurfaceDeformation.h"
 
 #include "boneAtlasTestPopulation.h"
 #include "boneQualityMeasures.h"

@@ -9,6 +9,7 @@
 #include <itkDataObject.h>
 #include <itkObjectFactory.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,7 @@ protected:
 };
 
 /** \class MeshTrainingSet
- * \brief A training set of meshes in memory. A mesh that is changed after it was added makes the set no newer. */
+ * \brief A training set of meshes in memory, newer where one of them was changed. */
 template <typename TMesh = DensityMesh<double>>
 class MeshTrainingSet : public TrainingSet
 {
@@ -60,6 +61,16 @@ public:
   {
     m_Subjects.emplace_back(name, mesh);
     this->Modified();
+  }
+  itk::ModifiedTimeType
+  GetMTime() const override
+  {
+    itk::ModifiedTimeType time = Superclass::GetMTime();
+    for (const auto & subject : m_Subjects)
+    {
+      time = std::max(time, subject.second->GetMTime());
+    }
+    return time;
   }
   std::size_t
   GetNumberOfSubjects() const override

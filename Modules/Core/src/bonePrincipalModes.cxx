@@ -3,8 +3,9 @@
  *=========================================================================*/
 #include "bonePrincipalModes.h"
 
+#include "boneSymmetricEigen.h"
+
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/random/mersenne_twister.hpp>
@@ -85,12 +86,12 @@ PrincipalModes::Posterior(const std::vector<Eigen::Index> & entries, const Eigen
   const Eigen::VectorXd                                b = factor.solve(q.transpose() * residual);
   const Eigen::MatrixXd                                scale = deviation.asDiagonal();
   const Eigen::MatrixXd                                half = factor.matrixL().solve(scale);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(half.transpose() * half);
+  const SymmetricEigen eigen = EigenOf(half.transpose() * half);
 
   PrincipalModes posterior;
   posterior.mean = this->Synthesize(b);
-  posterior.modes = modes * eigen.eigenvectors().rowwise().reverse();
-  posterior.variances = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  posterior.modes = modes * eigen.vectors.rowwise().reverse();
+  posterior.variances = eigen.values.reverse().cwiseMax(0.0);
   posterior.weights = weights;
   posterior.block = block;
   posterior.totalVariance = posterior.variances.sum();

@@ -5,6 +5,7 @@
 #define boneSurfaceDeformation_h
 
 #include "boneDirectedSurface.h"
+#include "boneExecution.h"
 
 namespace bone
 {
@@ -37,46 +38,8 @@ struct AdaptiveFocusParameters
 std::vector<Vector3>
 DeformAdaptiveFocus(const TriangleSurface &         source,
                     const DirectedSurface &         target,
-                    const AdaptiveFocusParameters & parameters);
-
-/** Parameters of \ref DeformNonRigidICP. */
-struct NonRigidICPParameters
-{
-  std::vector<double> stiffness{ 50, 20, 10, 5, 2, 1, 0.5 }; ///< one after the other
-  int                 iterations{ 4 };                       ///< with each stiffness at most
-  double              tolerance{ 0.05 };                     ///< mean move of a vertex that ends a stiffness, mm
-};
-
-/** \brief Optimal-step non-rigid ICP (B. Amberg, S. Romdhani & T. Vetter, doi:10.1109/CVPR.2007.383165), for
- * comparison.
- *
- * Each vertex has an affine map; those of neighbours differ as little as the stiffness asks for, while vertices come to
- * their closest points. One sparse linear least-squares problem a step. Returns the new points. */
-std::vector<Vector3>
-DeformNonRigidICP(const TriangleSurface &       source,
-                  const DirectedSurface &       target,
-                  const NonRigidICPParameters & parameters);
-
-/** Parameters of \ref FitFacets. */
-struct FacetFitParameters
-{
-  std::vector<int> smoothing{ 0, 0 }; ///< one a pass: how often the moves are averaged over neighbours
-  double           bound{ 0.5 };      ///< how far a vertex may move in all passes, mm
-  double           reach{ 5.0 };      ///< farther off the target is none, mm
-};
-
-/** \brief Moves vertices along their normals so that the facets, not the vertices, lie on the target.
- *
- * A surface whose vertices lie on a bone cuts off its bulges and fills its hollows by the sagitta of its facets, which
- * takes mass off the bone. Each pass moves a vertex by the mean signed distance of the facets around it, at seven
- * places of each, weighted by its shape function and their area; two passes are near enough to the least-squares
- * solution from nearby. Moves are smoothed over the surface first where it is farther off. Vertices with a mark in
- * `fixed` (empty: none) stay. The same for any number of threads. */
-void
-FitFacets(TriangleSurface &          surface,
-          const DirectedSurface &    target,
-          const FacetFitParameters & parameters,
-          const std::vector<char> &  fixed = {});
+                    const AdaptiveFocusParameters & parameters,
+                    const Execution &               execution = {});
 
 /** Rings of neighbours of every vertex: ring[v] lists vertices in order of rings, start[v][r] where ring r begins;
  * ring 0 is the vertex itself. */
@@ -86,12 +49,15 @@ struct RingNeighbors
   std::vector<std::vector<std::int32_t>> start; ///< rings + 2 entries a vertex
 };
 RingNeighbors
-FindRings(const TriangleSurface & surface, int rings);
+FindRings(const TriangleSurface & surface, int rings, const Execution & execution = {});
 
 /** \brief Attribute vectors: for each vertex and ring 1..layers the mean signed volume of the tetrahedra of the vertex
  * and three vertices a third of the ring apart, over the sum of the magnitudes; unchanged by affine maps. */
 Eigen::MatrixXd
-AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & rings, int layers);
+AttributeVectors(const std::vector<Vector3> & points,
+                 const RingNeighbors &        rings,
+                 int                          layers,
+                 const Execution &            execution = {});
 } // namespace bone
 
 #endif

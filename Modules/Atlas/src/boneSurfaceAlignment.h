@@ -4,7 +4,9 @@
 #ifndef boneSurfaceAlignment_h
 #define boneSurfaceAlignment_h
 
+#include "boneAtlasRegistrationParameters.h"
 #include "boneDirectedSurface.h"
+#include "boneExecution.h"
 #include "bonePointAlignment.h"
 
 namespace bone
@@ -12,7 +14,7 @@ namespace bone
 /** Parameters of \ref AlignSurfaces. */
 struct SurfaceAlignmentParameters
 {
-  AlignmentKind kind{ AlignmentKind::Affine }; ///< the last step's freedom
+  AlignmentKind kind{ AtlasRegistrationParameters().alignment }; ///< the last step's freedom
   bool          principalAxes{ true };         ///< start from principal axes; else from where the source is
   double        trim{ 0.9 };                   ///< share of the point pairs, the nearest, that count
   int           samples{ 1000 };               ///< points on each surface
@@ -36,7 +38,8 @@ struct SurfaceAlignmentResult
 SurfaceAlignmentResult
 AlignSurfaces(const TriangleSurface &            source,
               const DirectedSurface &            target,
-              const SurfaceAlignmentParameters & parameters);
+              const SurfaceAlignmentParameters & parameters,
+              const Execution &                  execution = {});
 } // namespace bone
 
 #endif

@@ -4,7 +4,9 @@
 #ifndef boneGramAnalysis_h
 #define boneGramAnalysis_h
 
+#include "boneExecution.h"
 #include "bonePrincipalModes.h"
+#include "boneStatisticalModelParameters.h"
 
 #include <functional>
 
@@ -24,7 +26,7 @@ struct GramParameters
 {
   double       proportion{ 1.0 };                  ///< of the variance that the kept modes explain, 0..1; 1: full rank
   Eigen::Index maximumModes{ 0 };                  ///< 0: no limit
-  std::size_t  blockBytes{ std::size_t(1) << 30 }; ///< for vectors held at once; twice as little reads them more often
+  std::size_t  blockBytes{ StatisticalModelParameters().blockBytes }; ///< for vectors held at once; twice as little reads them more often
 };
 
 /** \brief Principal modes by the eigenvectors of the #count by #count matrix of inner products (Gram matrix), in
@@ -42,7 +44,8 @@ AnalyzeVectors(const VectorSource &    source,
                const Eigen::VectorXd & weights,
                const Eigen::MatrixXd & block,
                const GramParameters &  parameters,
-               Eigen::MatrixXd *       scores = nullptr);
+               Eigen::MatrixXd *       scores = nullptr,
+               const Execution &       execution = {});
 } // namespace bone
 
 #endif

@@ -1,0 +1,37 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneStatisticalModelParameters_h
+#define boneStatisticalModelParameters_h
+
+#include "boneAlignmentKind.h"
+
+#include <cstddef>
+
+namespace bone
+{
+// clang-format off
+#define BONE_STATISTICAL_MODEL_PARAMETERS(value, flag) \
+  value(AlignmentKind, alignment, Alignment, AlignmentKind::Rigid, ParameterRange::Any(), "", "alignment", \
+    "How shapes are brought together: none, rigid, or similarity, which takes size out of the shape modes") \
+  value(double, varianceProportion, VarianceProportion, 0.98, ParameterRange::Above(0.0, 1.0), "", "variance", \
+    "Share of the variance of shape, and of density, that the modes explain; 1 keeps full rank") \
+  value(int, maximumModes, MaximumModes, 0, ParameterRange::AtLeast(0), "", "modes", \
+    "Largest number of modes of each; 0: no limit") \
+  flag(combined, Combined, false, "combined", "Combined modes of shape and density too") \
+  flag(volumeWeighted, VolumeWeighted, false, "volume-weighted", \
+    "Modes of density by integrals over the volume in place of coefficients") \
+  value(double, withinCellWeight, WithinCellWeight, 0.25, ParameterRange::Above(0.0, 1.0), "", "within-cell-weight", \
+    "With --volume-weighted: how much the variation within a tetrahedron counts against its mean; 1: the integral") \
+  value(double, outlierThreshold, OutlierThreshold, 3.5, ParameterRange::NotNegativeOrInfinite(), "", \
+    "outlier-threshold", "Modified z-score of the distance to the mean above which a subject is an outlier; 0: none is") \
+  flag(rejectOutliers, RejectOutliers, false, "reject-outliers", "Leave outliers out") \
+  value(std::size_t, blockBytes, BlockBytes, std::size_t(1) << 30, ParameterRange::AtLeast(0), "bytes", "", \
+    "Memory for densities held at once; does not change results beyond rounding")
+// clang-format on
+
+/** Parameters of StatisticalModelEstimator. */
+BONE_PARAMETER_STRUCT(StatisticalModelParameters, BONE_STATISTICAL_MODEL_PARAMETERS);
+} // namespace bone
+
+#endif
