@@ -23,13 +23,13 @@ using Json = nlohmann::json;
 
 struct Options
 {
-  std::string              mesh;
+  std::string                  mesh;
   DensityCalibrationParameters parameters;
-  std::string              references;
-  std::string              ct;
-  std::string              labels;
-  std::vector<std::string> laws;
-  std::string              output;
+  std::string                  references;
+  std::string                  ct;
+  std::string                  labels;
+  std::vector<std::string>     laws;
+  std::string                  output;
 };
 
 Vector3

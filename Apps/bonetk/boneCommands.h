@@ -21,6 +21,8 @@ using Action = std::function<void(Session &)>;
 void
 AddPhantomCommand(CLI::App & app, Action & action);
 void
+AddCropCommand(CLI::App & app, Action & action);
+void
 AddContoursCommand(CLI::App & app, Action & action);
 void
 AddMeshCommand(CLI::App & app, Action & action);

@@ -179,7 +179,8 @@ AddDrrCommand(CLI::App & app, Action & action)
   command
     ->add_option(
       "--region", options->region, "Only this region of the mesh: cortical, trabecular, cavity or its number")
-    ->transform(CLI::Transformer(std::map<std::string, int>{ { "cortical", 1 }, { "trabecular", 2 }, { "spongy", 2 }, { "cavity", 3 } })
+    ->transform(CLI::Transformer(std::map<std::string, int>{
+                                   { "cortical", 1 }, { "trabecular", 2 }, { "spongy", 2 }, { "cavity", 3 } })
                   .description(""))
     ->check(CLI::PositiveNumber.description(""));
   command

@@ -21,11 +21,11 @@ namespace
 {
 struct VoxelsOptions
 {
-  std::string mesh;
-  std::string like;
-  double      spacing{ 1.0 };
+  std::string            mesh;
+  std::string            like;
+  double                 spacing{ 1.0 };
   DensityImageParameters image;
-  std::string output;
+  std::string            output;
 };
 
 void

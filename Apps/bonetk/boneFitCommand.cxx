@@ -24,12 +24,12 @@ using Json = nlohmann::ordered_json;
 
 struct Options
 {
-  std::string ct;
-  std::string mesh;
+  std::string          ct;
+  std::string          mesh;
   DensityFitParameters parameters;
-  std::string weights;
-  std::string report;
-  std::string output;
+  std::string          weights;
+  std::string          report;
+  std::string          output;
 };
 
 /** Error at voxel centres of the mesh; with `heldOut` at those that IsHeldOut() alone. */

@@ -122,7 +122,8 @@ AddInfoCommand(CLI::App & app, Action & action)
 {
   auto   path = std::make_shared<std::string>();
   auto * command = app.add_subcommand("info", "Say what is in a file, or in a folder with a DICOM series");
-  command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, statistical model, surface or image")->required();
+  command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, statistical model, surface or image")
+    ->required();
   command->callback([path, &action] { action = [path](Session & session) { session.Print(Describe(*path)); }; });
 }
 } // namespace bone

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneBuildPipeline.h"
 #include "boneContourIO.h"
@@ -15,12 +16,12 @@ namespace
 {
 struct Options
 {
-  std::string contours;
-  std::string ct;
-  std::string metric{ "combined" };
-  std::string correspondence;
-  std::string correspondenceOutput;
-  std::string output;
+  std::string      contours;
+  std::string      ct;
+  TilingParameters parameters;
+  std::string      correspondence;
+  std::string      correspondenceOutput;
+  std::string      output;
 };
 
 void
@@ -31,13 +32,13 @@ Run(const Options & options, Session & session)
   {
     VerifyExtension(options.correspondenceOutput, { ".json" });
   }
-  if (options.ct.empty() && options.metric == "density")
+  if (options.ct.empty() && options.parameters.metric == TilingMetricKind::Density)
   {
     throw UsageError("--metric density needs --ct");
   }
   auto tiling = ContourTilingMeshSource<DensityMesh<double>>::New();
   tiling->SetInput(ReadContours(options.contours));
-  tiling->SetMetric(ParseChoice<TilingMetricKind>(options.metric));
+  tiling->SetParameters(options.parameters);
   if (!options.correspondence.empty())
   {
     tiling->SetCorrespondence(std::make_shared<ContourCorrespondence>(ReadCorrespondence(options.correspondence)));
@@ -46,7 +47,7 @@ Run(const Options & options, Session & session)
   {
     tiling->SetDensityImage(ReadCT(options.ct));
   }
-  else if (options.metric == "combined")
+  else if (options.parameters.metric == TilingMetricKind::Combined)
   {
     session.Print("no --ct: the combined metric is span length alone\n");
   }
@@ -71,9 +72,7 @@ AddMeshCommand(CLI::App & app, Action & action)
   auto * command = app.add_subcommand("mesh", "Tile contours into a layered tetrahedral mesh");
   command->add_option("contours", options->contours, "Contours (.vtp)")->required();
   command->add_option("--ct", options->ct, "CT whose density the metric follows");
-  command->add_option("--metric", options->metric, "What the tiling minimises (volume: maximises); default combined")
-    ->check(CLI::IsMember({ "span", "area", "volume", "density", "combined" }).description(""))
-    ->type_name("span|area|volume|density|combined");
+  AddParameterOptions(command, options->parameters);
   command->add_option("--correspondence",
                       options->correspondence,
                       "Which contours of neighbouring slices belong together (.json), where they do not as found");

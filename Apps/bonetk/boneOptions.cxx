@@ -54,8 +54,6 @@ void
 BoneOptions::AddTo(CLI::App * command)
 {
   command->add_option("--labels", labels, "Label map on the CT's grid: where the bone is");
-  command->add_option("--label", label, "The bone's value in label maps (--labels, --init); default: every value but 0")
-    ->check(Between(-32768, 32767));
   auto * initOption = command->add_option("--init",
                                           init,
                                           "Initial contours: .vtp, .mrk.json of 3D Slicer, DICOM structure set (.dcm), "
@@ -74,7 +72,7 @@ BoneOptions::Verify() const
 }
 
 BoneInput
-ReadBone(const BoneOptions & options, int axis)
+ReadBone(const BoneOptions & options, int label, unsigned int axis)
 {
   BoneInput input;
   if (!options.labels.empty())
@@ -83,18 +81,18 @@ ReadBone(const BoneOptions & options, int axis)
   }
   if (!options.init.empty())
   {
-    input.contours = ReadContours(options.init, { options.structure, options.label, static_cast<unsigned int>(axis) });
+    input.contours = ReadContours(options.init, { options.structure, label, axis });
   }
   return input;
 }
 
 void
-AddAxisOption(CLI::App * command, int & axis)
+AddAxisOption(CLI::App * command, unsigned int & axis)
 {
-  const std::map<std::string, int> axes = { { "x", 0 }, { "y", 1 }, { "z", 2 } };
+  const std::map<std::string, unsigned int> axes = { { "x", 0 }, { "y", 1 }, { "z", 2 } };
   command->add_option("--axis", axis, "Image axis that the slices are stacked along: x, y or z (default)")
     ->transform(CLI::Transformer(axes, CLI::ignore_case).description(""))
-    ->check(CLI::IsMember({ 0, 1, 2 }).description(""))
+    ->check(CLI::IsMember({ 0U, 1U, 2U }).description(""))
     ->type_name("x|y|z");
 }
 

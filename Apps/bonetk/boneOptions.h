@@ -29,11 +29,10 @@ Between(double lower, double upper);
 struct BoneOptions
 {
   std::string labels;
-  int         label{ 0 };
   std::string init;
   std::string structure;
 
-  /** Adds --labels, --label, --init and --structure. */
+  /** Adds --labels, --init and --structure. */
   void
   AddTo(CLI::App * command);
   /** Throws UsageError where neither labels nor contours were given. */
@@ -48,13 +47,13 @@ struct BoneInput
   ContourStack::Pointer contours;
 };
 
-/** `axis` is that of AddAxisOption. */
+/** `label` is the bone's value in label maps, `axis` that of AddAxisOption. */
 BoneInput
-ReadBone(const BoneOptions & options, int axis);
+ReadBone(const BoneOptions & options, int label, unsigned int axis);
 
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void
-AddAxisOption(CLI::App * command, int & axis);
+AddAxisOption(CLI::App * command, unsigned int & axis);
 
 /** The name must end in one of the extensions; throws UsageError. */
 void

@@ -122,8 +122,8 @@ AddParameterOption(CLI::App * command, const ParameterField & field, T & value)
   }
 }
 
-/** Adds an option for each parameter of `parameters` that has one, or for these `members` alone; their values are set in
- * `parameters`, whose values now are the defaults that the help shows. */
+/** Adds an option for each parameter of `parameters` that has one, or for these `members` alone; their values are set
+ * in `parameters`, whose values now are the defaults that the help shows. */
 template <typename TParameters>
 void
 AddParameterOptions(CLI::App *                                command,

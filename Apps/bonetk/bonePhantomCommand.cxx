@@ -16,14 +16,14 @@ namespace
 {
 struct Options
 {
-  std::string   bone{ "femur" };
-  std::string   surface;
-  std::uint64_t subject{ 0 };
-  double        spacing{ 1.0 };
-  double        sliceSpacing{ 0.0 };
+  std::string            bone{ "femur" };
+  std::string            surface;
+  std::uint64_t          subject{ 0 };
+  double                 spacing{ 1.0 };
+  double                 sliceSpacing{ 0.0 };
   PhantomImageParameters image;
-  std::string   output;
-  std::string   labels;
+  std::string            output;
+  std::string            labels;
 };
 
 PhantomModel::Pointer

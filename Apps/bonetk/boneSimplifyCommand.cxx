@@ -4,6 +4,7 @@
 #include "boneCommands.h"
 #include "boneParameterOptions.h"
 
+#include "boneBuildPlan.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
 #include "boneTetraCollapseFilter.h"
@@ -16,18 +17,22 @@ namespace
 {
 struct Options
 {
-  std::string         mesh;
+  std::string             mesh;
   TetraCollapseParameters parameters;
-  std::string         prefix;
+  BuildPlanParameters     plan;            ///< its levels
+  bool                    levels{ false }; ///< given
+  std::string             prefix;
 };
 
+/** Throws a UsageError where no level is asked for, or one is finer than the one before. */
 void
-Run(const Options & options, Session & session)
+Verify(const Options & options)
 {
   const TetraCollapseParameters & parameters = options.parameters;
-  if (parameters.levels.empty() && parameters.maximumDensityErrors.empty() && parameters.maximumSurfaceDistances.empty())
+  if (!options.levels && parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
+      parameters.maximumSurfaceDistances.empty())
   {
-    throw UsageError("--tetrahedra, --max-density-error or --max-surface-distance is required");
+    throw UsageError("--tetrahedra, --levels, --max-density-error or --max-surface-distance is required");
   }
   if (!std::is_sorted(parameters.levels.rbegin(), parameters.levels.rend()))
   {
@@ -41,8 +46,27 @@ Run(const Options & options, Session & session)
   {
     throw UsageError("--max-surface-distance must not descend: each level is coarser than the one before");
   }
+}
+
+void
+Run(const Options & options, Session & session)
+{
+  Verify(options);
+  TetraCollapseParameters parameters = options.parameters;
+  const auto              mesh = ReadDensityMesh(options.mesh);
+  if (options.levels)
+  {
+    try
+    {
+      parameters.levels = CountTetrahedraOfLevels(options.plan.levels, mesh->GetNumberOfTetrahedra());
+    }
+    catch (const std::invalid_argument & error)
+    {
+      throw UsageError(std::string("--") + error.what());
+    }
+  }
   auto collapse = TetraCollapseFilter<DensityMesh<double>>::New();
-  collapse->SetInput(ReadDensityMesh(options.mesh));
+  collapse->SetInput(mesh);
   collapse->SetParameters(parameters);
   session.Watch(collapse, "simplification");
   collapse->Update();
@@ -57,9 +81,12 @@ AddSimplifyCommand(CLI::App & app, Action & action)
   auto * command = app.add_subcommand("simplify", "Simplify a density mesh into a hierarchy of coarser levels");
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
   AddParameterOptions(command, options->parameters);
+  AddParameterOptions(command, options->plan, { "levels" });
+  command->get_option("--levels")->excludes("--tetrahedra");
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();
   command->callback([options, command, &action] {
+    options->levels = command->count("--levels") > 0;
     if (command->count("--min-angle") > 0 && command->count("--min-cortical-angle") == 0)
     {
       options->parameters.minimumCorticalDihedralAngle = 0.5 * options->parameters.minimumDihedralAngle;

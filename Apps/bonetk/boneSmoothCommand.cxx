@@ -3,14 +3,14 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
+#include "boneBuildPlan.h"
 #include "boneContourIO.h"
 #include "boneImageIO.h"
 #include "boneMeshIO.h"
 #include "boneMeshQualityFilter.h"
 #include "boneTetraSmoothingFilter.h"
-
-#include <map>
 
 namespace bone
 {
@@ -18,15 +18,16 @@ namespace
 {
 struct Options
 {
-  std::string input;
-  std::string method{ "quality" };
-  std::string contours;
-  std::string labels;
-  int         label{ 0 };
-  int         iterations{ 0 };
-  double      distance{ 0.3 };
-  double      stiffness{ -1.0 };
-  std::string output;
+  std::string              input;
+  std::string              method{ "quality" };
+  std::string              contours;
+  std::string              labels;
+  BuildPlanParameters      plan;
+  MeshQualityParameters    quality;
+  TetraSmoothingParameters smoothing;
+  bool                     distance{ false };   ///< given
+  bool                     iterations{ false }; ///< given
+  std::string              output;
 };
 
 using MeshType = DensityMesh<double>;
@@ -37,23 +38,19 @@ FilterType::Pointer
 MakeQuality(const Options & options)
 {
   auto quality = MeshQualityFilter<MeshType>::New();
-  quality->SetDistanceBound(options.distance);
-  if (options.iterations > 0)
-  {
-    quality->SetIterations(options.iterations);
-  }
-  if (options.stiffness >= 0)
-  {
-    quality->SetStiffness(options.stiffness);
-  }
+  quality->SetParameters(options.quality);
   if (!options.contours.empty())
   {
     quality->SetContours(ReadContours(options.contours));
   }
   if (!options.labels.empty())
   {
-    quality->SetLabelImage(ReadLabels(options.labels));
-    quality->SetLabel(static_cast<short>(options.label));
+    const LabelImage::Pointer labels = ReadLabels(options.labels);
+    quality->SetLabelImage(labels);
+    if (!options.distance)
+    {
+      quality->SetDistanceBound(FindDistanceBound(*labels, options.plan));
+    }
   }
   return quality.GetPointer();
 }
@@ -62,19 +59,14 @@ MakeQuality(const Options & options)
 FilterType::Pointer
 MakeSmoothing(const Options & options)
 {
-  static const std::map<std::string, SmoothingMethod> methods = { { "laplacian", SmoothingMethod::Laplacian },
-                                                                  { "smart", SmoothingMethod::Smart },
-                                                                  { "enhanced", SmoothingMethod::Enhanced } };
-  if (!options.contours.empty() || !options.labels.empty() || options.stiffness >= 0)
-  {
-    throw UsageError("--contours, --labels and --stiffness go with --method quality only");
-  }
   auto smoothing = TetraSmoothingFilter<MeshType>::New();
-  smoothing->SetMethod(methods.at(options.method));
-  smoothing->SetDistanceBound(options.distance);
-  if (options.iterations > 0)
+  smoothing->SetParameters(options.smoothing);
+  smoothing->SetMethod(ParseChoice<SmoothingMethod>(options.method));
+  smoothing->SetDistanceBound(options.quality.distanceBound);
+  smoothing->SetFairingIterations(options.quality.fairingIterations);
+  if (options.iterations)
   {
-    smoothing->SetIterations(options.iterations);
+    smoothing->SetIterations(options.quality.iterations);
   }
   return smoothing.GetPointer();
 }
@@ -112,20 +104,34 @@ AddSmoothCommand(CLI::App & app, Action & action)
     ->type_name("quality|enhanced|smart|laplacian");
   command->add_option(
     "--contours", options->contours, "Contours (.vtp) of the bone, to which quality fits the surfaces");
-  auto * labels = command->add_option(
+  command->add_option(
     "--labels", options->labels, "Label map of the bone, to whose voxels quality fits the surface next to contours");
-  command->add_option("--label", options->label, "The bone's value in the label map; default: every value but 0")
-    ->check(Between(-32768, 32767))
-    ->needs(labels);
-  command->add_option("--distance", options->distance, "How far a surface may go, mm (quality, enhanced); default 0.3")
-    ->check(NotNegative());
-  command->add_option("--stiffness", options->stiffness, "Resistance of surfaces to bending (quality); default 0.08")
-    ->check(NotNegative());
-  command
-    ->add_option(
-      "--iterations", options->iterations, "Passes of smoothing; default 4 (at its start) in quality, else 10")
-    ->check(Between(1, 10000));
+  AddParameterOptions(command, options->quality);
+  AddParameterOptions(command, options->smoothing, { "weight", "angleFloor" });
+  AddAxisOption(command, options->plan.axis);
+  command->get_option("--label")->needs("--labels");
+  command->get_option("--iterations")->description("Passes of smoothing; default 4 (at its start) in quality, else 10");
+  command->get_option("--distance")
+    ->description("How far a surface may go, in mm; default 0.3, with --labels half a pixel of it at most");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, command, &action] {
+    options->distance = command->count("--distance") > 0;
+    options->iterations = command->count("--iterations") > 0;
+    for (const char * of : { "--contours",
+                             "--labels",
+                             "--stiffness",
+                             "--rounds",
+                             "--target-angle",
+                             "--gradation",
+                             "--optimization-passes",
+                             "--sliver-factor" })
+    {
+      if (options->method != "quality" && command->count(of) > 0)
+      {
+        throw CLI::ValidationError(of, "goes with --method quality only");
+      }
+    }
+    action = [options](Session & session) { Run(*options, session); };
+  });
 }
 } // namespace bone

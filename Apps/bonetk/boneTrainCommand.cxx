@@ -4,6 +4,7 @@
 #include "boneCommands.h"
 #include "boneDescribe.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 #include "bonePopulation.h"
 #include "boneStagingFolder.h"
 
@@ -12,7 +13,6 @@
 #include "boneStatisticalModelEstimator.h"
 
 #include <iomanip>
-#include <map>
 #include <sstream>
 
 namespace bone
@@ -21,21 +21,14 @@ namespace
 {
 struct Options
 {
-  std::string list;
-  std::string standard;
-  int         degree{ 2 };
-  bool        similarity{ false };
-  bool        combined{ false };
-  bool        volumeWeighted{ false };
-  double      withinCellWeight{ 0.25 };
-  double      variance{ 0.98 };
-  int         modes{ 0 };
-  bool        rejectOutliers{ false };
-  std::string mirror{ "never" };
-  std::string interior{ "harmonic" };
-  std::string method{ "focus" };
-  std::string registered;
-  std::string output;
+  std::string                 list;
+  std::string                 standard;
+  int                         degree{ 2 };
+  bool                        similarity{ false };
+  AtlasRegistrationParameters registration;
+  StatisticalModelParameters  model;
+  std::string                 registered;
+  std::string                 output;
 };
 
 std::string
@@ -63,17 +56,6 @@ RegistrationLine(const SubjectFiles &           subject,
 }
 
 void
-SetFilter(const Options & options, AtlasRegistrationFilter<> * filter)
-{
-  static const std::map<std::string, MirrorMode> mirrors = { { "never", MirrorMode::Never },
-                                                             { "always", MirrorMode::Always },
-                                                             { "try", MirrorMode::Try } };
-  filter->SetMirror(mirrors.at(options.mirror));
-  filter->SetInterior(options.interior == "harmonic" ? InteriorRule::Harmonic : InteriorRule::EigenFrame);
-  filter->SetMethod(options.method == "focus" ? DeformationMethod::AdaptiveFocus : DeformationMethod::NonRigidICP);
-}
-
-void
 Run(const Options & options, Session & session)
 {
   VerifyExtension(options.output, { ".h5" });
@@ -85,7 +67,7 @@ Run(const Options & options, Session & session)
                      " must be a mesh (.vtu): put one first in the list, or give --standard");
   }
   PopulationRegistration population(ReadDensityMesh(standard), options.degree);
-  SetFilter(options, population.GetFilter());
+  population.GetFilter()->SetParameters(options.registration);
   session.Watch(population.GetFilter(), "registration");
 
   // Registered subjects go to files, so that only one is in memory at a time.
@@ -116,13 +98,11 @@ Run(const Options & options, Session & session)
 
   auto estimator = StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
-  estimator->SetAlignment(options.similarity ? AlignmentKind::Similarity : AlignmentKind::Rigid);
-  estimator->SetCombined(options.combined);
-  estimator->SetVolumeWeighted(options.volumeWeighted);
-  estimator->SetWithinCellWeight(options.withinCellWeight);
-  estimator->SetVarianceProportion(options.variance);
-  estimator->SetMaximumModes(options.modes);
-  estimator->SetRejectOutliers(options.rejectOutliers);
+  estimator->SetParameters(options.model);
+  if (options.similarity)
+  {
+    estimator->SetAlignment(AlignmentKind::Similarity);
+  }
   session.Watch(estimator, "training");
   estimator->Update();
   for (const SubjectDeviation & subject : estimator->GetSubjectDeviations())
@@ -162,31 +142,16 @@ AddTrainCommand(CLI::App & app, Action & action)
   command->add_option("--degree", options->degree, "Degree of densities that are fitted, 0 to 8; default 2")
     ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
   command->add_flag("--similarity", options->similarity, "Take size out of the shapes");
-  command->add_flag("--combined", options->combined, "Combined modes of shape and density too");
-  command->add_flag("--volume-weighted",
-                    options->volumeWeighted,
-                    "Modes of density by integrals over the volume in place of coefficients");
-  command
-    ->add_option("--within-cell-weight",
-                 options->withinCellWeight,
-                 "With --volume-weighted: how much the variation within a tetrahedron counts against its mean; default "
-                 "0.25, 1 is the integral itself")
-    ->check(Between(1e-6, 1));
-  command->add_option("--variance", options->variance, "Share of the variance that the modes explain; default 0.98")
-    ->check(Between(0.01, 1));
-  command->add_option("--modes", options->modes, "Largest number of modes; default 0, no limit")
-    ->check(Between(0, 100000));
-  command->add_flag("--reject-outliers", options->rejectOutliers, "Leave outliers out");
-  command->add_option("--mirror", options->mirror, "Reflect subjects: never (default), always, or try what fits better")
-    ->check(CLI::IsMember({ "never", "always", "try" }).description(""))
-    ->type_name("never|always|try");
-  command
-    ->add_option("--method", options->method, "Deformation of the surface: adaptive focus (default) or non-rigid ICP")
-    ->check(CLI::IsMember({ "focus", "icp" }).description(""))
-    ->type_name("focus|icp");
-  command->add_option("--interior", options->interior, "How interior points follow: harmonic (default) or frames")
-    ->check(CLI::IsMember({ "harmonic", "frames" }).description(""))
-    ->type_name("harmonic|frames");
+  AddParameterOptions(command,
+                      options->model,
+                      { "varianceProportion",
+                        "maximumModes",
+                        "combined",
+                        "volumeWeighted",
+                        "withinCellWeight",
+                        "outlierThreshold",
+                        "rejectOutliers" });
+  AddParameterOptions(command, options->registration, { "mirror", "method", "interior", "exteriorBound" });
   command->add_option("--registered", options->registered, "Folder to keep the registered subjects in; default: none");
   command->add_option("-o,--output", options->output, "Statistical model to write (.h5)")->required();
   command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });

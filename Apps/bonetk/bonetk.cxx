@@ -101,6 +101,7 @@ main(int argc, char ** argv)
   app.require_subcommand(1);
   app.set_version_flag("--version", "bonetk " BONETK_VERSION);
   bone::AddPhantomCommand(app, action);
+  bone::AddCropCommand(app, action);
   bone::AddContoursCommand(app, action);
   bone::AddMeshCommand(app, action);
   bone::AddSmoothCommand(app, action);

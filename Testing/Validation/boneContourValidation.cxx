@@ -269,7 +269,7 @@ RunPhantom(int argc, char ** argv)
   auto       source = PhantomImageSource<CTImage>::New();
   source->SetModel(model);
   CTImage::SpacingType spacing;
-  const double pixel = argc > 7 ? std::atof(argv[7]) : 0.6;
+  const double         pixel = argc > 7 ? std::atof(argv[7]) : 0.6;
   spacing[0] = spacing[1] = pixel;
   spacing[2] = 1.0;
   source->SetSpacing(spacing);

@@ -438,7 +438,7 @@ Methods(const std::string & input)
   {
     for (int iterations : { 1, 2, 5, 10, 20, 50 })
     {
-      bone::TetraComplex        complex(before);
+      bone::TetraComplex             complex(before);
       bone::TetraSmoothingParameters parameters;
       parameters.method = method;
       parameters.iterations = iterations;

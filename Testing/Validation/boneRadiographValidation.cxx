@@ -100,8 +100,9 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
   {
     pointers.push_back(&images[i]);
   }
-  Time(
-    "derivatives " + path, 15, [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers); });
+  Time("derivatives " + path, 15, [&]() {
+    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers);
+  });
 }
 
 /** ITK's ray caster turns no axes: points are turned about the image's origin. It counts what is above 0. */

@@ -113,7 +113,7 @@ class Tables:
         for size in SIZES:
             distance = REFERENCE[0] * math.sqrt(REFERENCE[1] / size)
             self.run(self.bonetk, "contours", self.data / ct, "--labels", self.data / labels, "--label", label,
-                     "--adaptive-slices", f"{distance:.3f}", "--tetrahedra", size, "-o", contours, "--quiet")
+                     "--slice-step", f"{distance:.3f}", "--tetrahedra", size, "-o", contours, "--quiet")
             row = self.tiled(contours, mesh)
             start = time.monotonic()
             self.run(self.bonetk, "mesh", contours, "--threads", 2, "-o", mesh, "--quiet")

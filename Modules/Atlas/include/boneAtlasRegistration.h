@@ -59,11 +59,10 @@ public:
    * gives them; else interior points follow the exterior. Throws std::invalid_argument where the subject has no
    * surface, std::runtime_error with their number where tetrahedra are left inverted. */
   std::vector<Vector3>
-  Register(
-    const SubjectSurfaces &             subject,
-    const AtlasRegistrationParameters & parameters,
-    RegistrationReport &                report,
-    const Execution &                   execution = {}) const;
+  Register(const SubjectSurfaces &             subject,
+           const AtlasRegistrationParameters & parameters,
+           RegistrationReport &                report,
+           const Execution &                   execution = {}) const;
 
   const TriangleSurface &
   GetSurface() const

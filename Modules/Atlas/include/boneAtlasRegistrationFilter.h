@@ -31,7 +31,8 @@ namespace bone
  * Mirror: Never (default), Always, or Try: the subject is reflected at x = 0 first, and the output lies in the
  * reflected space (GetReport().mirrored); ReflectPoints brings points back.
  *
- * Parameters: \ref AtlasRegistrationParameters. Results do not depend on the number of threads. Throws itk::ExceptionObject. */
+ * Parameters: \ref AtlasRegistrationParameters. Results do not depend on the number of threads. Throws
+ * itk::ExceptionObject. */
 template <typename TMesh = DensityMesh<double>>
 class AtlasRegistrationFilter : public MeshSource<TMesh>
 {

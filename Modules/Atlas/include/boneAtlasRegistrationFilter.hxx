@@ -77,7 +77,7 @@ void
 AtlasRegistrationFilter<TMesh>::GenerateData()
 {
   const TMesh * standard = this->GetStandard();
-  MeshArrays arrays = standard->GetArrays();
+  MeshArrays    arrays = standard->GetArrays();
   try
   {
     if (m_Standard == nullptr || m_StandardTime != standard->GetMTime())

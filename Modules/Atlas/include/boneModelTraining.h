@@ -32,9 +32,7 @@ struct TrainingResult
 
 /** The kernel of \ref StatisticalModelEstimator. Throws itk::ExceptionObject. */
 TrainingResult
-TrainModel(const TrainingSet &                set,
-           const StatisticalModelParameters & parameters,
-           const Execution &                  execution = {});
+TrainModel(const TrainingSet & set, const StatisticalModelParameters & parameters, const Execution & execution = {});
 
 /** Modified z-scores 0.6745 (x - median) / median |x - median| (Iglewicz & Hoaglin 1993); 0 where all are equal. */
 std::vector<double>

@@ -13,8 +13,8 @@ namespace bone
 /** \class StatisticalModelEstimator
  * \brief Mean and modes of variation of shape and density of a training set (paper 6.2).
  *
- * Inputs: subjects on one topology with density of one degree and quantity, or none. Either meshes, each an input of the
- * pipeline (AddSubject): they are updated with the estimator, which runs again where one of them has changed; or
+ * Inputs: subjects on one topology with density of one degree and quantity, or none. Either meshes, each an input of
+ * the pipeline (AddSubject): they are updated with the estimator, which runs again where one of them has changed; or
  * "TrainingSet" (SetInput), which gives out its subjects one at a time, for populations that do not fit in memory.
  * Output: \ref StatisticalModel.
  *
@@ -26,8 +26,8 @@ namespace bone
  * Parameters: \ref StatisticalModelParameters. With Combined there is Cootes' combined model of both too. With
  * VolumeWeighted the inner product of densities is their integral over the mean mesh, so that cells count by their
  * volume and modes are those of the density as a function, whatever its degree; else each coefficient counts alike, as
- * in the paper. WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur at
- * the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
+ * in the paper. WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur
+ * at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
  *
  * Results do not depend on the number of threads. Throws itk::ExceptionObject where there are fewer than two subjects,
  * one has another topology, degree or quantity than the first, or a parameter is out of range.

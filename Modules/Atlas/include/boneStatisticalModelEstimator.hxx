@@ -85,8 +85,7 @@ StatisticalModelEstimator<TMesh>::GenerateData()
     auto subjects = MeshTrainingSet<TMesh>::New();
     for (std::size_t i = 0; i < m_Names.size(); ++i)
     {
-      subjects->AddSubject(m_Names[i],
-                           static_cast<const TMesh *>(this->itk::ProcessObject::GetInput(InputName(i))));
+      subjects->AddSubject(m_Names[i], static_cast<const TMesh *>(this->itk::ProcessObject::GetInput(InputName(i))));
     }
     set = subjects.GetPointer();
   }

@@ -15,8 +15,8 @@ namespace bone
 struct UntanglingParameters
 {
   double exteriorBound{ AtlasRegistrationParameters().exteriorBound }; ///< how far an exterior point may move, mm
-  int    iterations{ 200 };    ///< passes over the points around bad cells
-  double floor{ 0.02 };        ///< volume relative to that of the alignment below which a cell is worked on
+  int    iterations{ 200 };                                            ///< passes over the points around bad cells
+  double floor{ 0.02 }; ///< volume relative to that of the alignment below which a cell is worked on
 };
 
 /** What an untangling did. */

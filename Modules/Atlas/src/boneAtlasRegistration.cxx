@@ -61,7 +61,8 @@ double
 MeanDistance(const std::vector<Vector3> & points, const DirectedSurface & surface, const Execution & execution)
 {
   std::vector<double> distance(points.size());
-  execution.Silent().For(points.size(), [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); }, 64);
+  execution.Silent().For(
+    points.size(), [&](std::size_t p) { distance[p] = std::sqrt(surface.FindAny(points[p]).squaredDistance); }, 64);
   double sum = 0;
   for (const double d : distance)
   {
@@ -170,7 +171,7 @@ StandardModel::Register(const SubjectSurfaces &             subjects,
                         const Execution &                   execution) const
 {
   const RegistrationParameters parameters(given);
-  const TriangleSurface & subject = subjects.exterior;
+  const TriangleSurface &      subject = subjects.exterior;
   if (subject.triangles.empty())
   {
     throw std::invalid_argument("The subject has no surface.");
@@ -207,13 +208,19 @@ StandardModel::Register(const SubjectSurfaces &             subjects,
                    : DeformNonRigidICP(moved, *target, parameters.nonRigid, execution.Part(0.3, 0.8));
   FitFacets(moved, *target, parameters.facets, {}, execution);
   execution.Report(0.83);
-  std::vector<Vector3> points = m_Interior->Deform(parameters.interior, aligned.map, moved.points, execution.Part(0.83, 0.87));
+  std::vector<Vector3> points =
+    m_Interior->Deform(parameters.interior, aligned.map, moved.points, execution.Part(0.83, 0.87));
   if (!subjects.inner.empty())
   {
-    this->FitLayers(
-      report.mirrored ? ReflectAll(subjects.inner) : subjects.inner, parameters, aligned.map, points, report, execution.Part(0.87, 0.9));
+    this->FitLayers(report.mirrored ? ReflectAll(subjects.inner) : subjects.inner,
+                    parameters,
+                    aligned.map,
+                    points,
+                    report,
+                    execution.Part(0.87, 0.9));
   }
-  report.untangling = UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling, execution.Part(0.9, 1.0));
+  report.untangling =
+    UntangleMesh(m_Mesh, m_SurfaceId, aligned.map, points, parameters.untangling, execution.Part(0.9, 1.0));
   if (report.untangling.after > 0)
   {
     std::ostringstream text;

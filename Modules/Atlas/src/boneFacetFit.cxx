@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneFacetFit.h"
 
-
 #include <array>
 
 namespace bone
@@ -77,7 +76,8 @@ FindMoves(const TriangleSurface &      surface,
           const Execution &            execution)
 {
   std::vector<FacetPull> pulls(surface.triangles.size());
-  execution.Silent().For(pulls.size(), [&](std::size_t f) { pulls[f] = FindPull(surface, f, normals, target, reach); }, 64);
+  execution.Silent().For(
+    pulls.size(), [&](std::size_t f) { pulls[f] = FindPull(surface, f, normals, target, reach); }, 64);
   std::vector<double> move(surface.points.size(), 0.0), weight(surface.points.size(), 0.0);
   for (std::size_t f = 0; f < pulls.size(); ++f)
   {

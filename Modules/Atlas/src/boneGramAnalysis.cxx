@@ -5,7 +5,6 @@
 
 #include "boneSymmetricEigen.h"
 
-
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -23,14 +22,13 @@ constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
 void
 InParallel(const Execution & execution, Eigen::Index count, const std::function<void(Eigen::Index)> & body)
 {
-  execution.Silent().For(static_cast<std::size_t>(count), [&body](std::size_t i) { body(static_cast<Eigen::Index>(i)); });
+  execution.Silent().For(static_cast<std::size_t>(count),
+                         [&body](std::size_t i) { body(static_cast<Eigen::Index>(i)); });
 }
 
 /** Calls body(first row, rows) for fixed chunks of all rows. */
 void
-OverRows(const Execution &                                      execution,
-         Eigen::Index                                           rows,
-         const std::function<void(Eigen::Index, Eigen::Index)> & body)
+OverRows(const Execution & execution, Eigen::Index rows, const std::function<void(Eigen::Index, Eigen::Index)> & body)
 {
   InParallel(execution, (rows + RowChunk - 1) / RowChunk, [&](Eigen::Index chunk) {
     const Eigen::Index first = chunk * RowChunk;
@@ -139,9 +137,9 @@ private:
 };
 
 void
-InnerProducts(const Execution &          execution,
-              const Eigen::MatrixXd &    a,
-              const Eigen::MatrixXd &    b,
+InnerProducts(const Execution &           execution,
+              const Eigen::MatrixXd &     a,
+              const Eigen::MatrixXd &     b,
               Eigen::Ref<Eigen::MatrixXd> products)
 {
   const Eigen::Index tiles = (a.cols() + ColumnTile - 1) / ColumnTile;
@@ -254,7 +252,8 @@ AnalyzeVectors(const VectorSource &    source,
   }
   const PlainProduct    product(weights, block);
   const CentredReader   reader(source, product, execution);
-  const Eigen::MatrixXd gram = GramMatrix(reader, source, parameters.blockBytes, execution.Part(0.2, 0.7)) / static_cast<double>(n - 1);
+  const Eigen::MatrixXd gram =
+    GramMatrix(reader, source, parameters.blockBytes, execution.Part(0.2, 0.7)) / static_cast<double>(n - 1);
   const SymmetricEigen  eigen = EigenOf(gram);
   const Eigen::VectorXd variances = eigen.values.reverse();
 

@@ -24,9 +24,11 @@ struct VectorSource
 /** How many modes are kept, and the memory for it. */
 struct GramParameters
 {
-  double       proportion{ 1.0 };                  ///< of the variance that the kept modes explain, 0..1; 1: full rank
-  Eigen::Index maximumModes{ 0 };                  ///< 0: no limit
-  std::size_t  blockBytes{ StatisticalModelParameters().blockBytes }; ///< for vectors held at once; twice as little reads them more often
+  double       proportion{ 1.0 }; ///< of the variance that the kept modes explain, 0..1; 1: full rank
+  Eigen::Index maximumModes{ 0 }; ///< 0: no limit
+  std::size_t  blockBytes{
+    StatisticalModelParameters().blockBytes
+  }; ///< for vectors held at once; twice as little reads them more often
 };
 
 /** \brief Principal modes by the eigenvectors of the #count by #count matrix of inner products (Gram matrix), in

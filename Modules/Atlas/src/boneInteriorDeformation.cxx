@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneInteriorDeformation.h"
 
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -124,7 +123,10 @@ InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vec
 InteriorDeformation::~InteriorDeformation() = default;
 
 std::vector<Vector3>
-InteriorDeformation::Deform(InteriorRule rule, const AffineMap & alignment, const std::vector<Vector3> & moved, const Execution & execution) const
+InteriorDeformation::Deform(InteriorRule                 rule,
+                            const AffineMap &            alignment,
+                            const std::vector<Vector3> & moved,
+                            const Execution &            execution) const
 {
   if (moved.size() != m_Exterior.size())
   {
@@ -157,34 +159,39 @@ InteriorDeformation::DeformHarmonic(const AffineMap & alignment, const std::vect
 }
 
 std::vector<Vector3>
-InteriorDeformation::DeformByFrames(const AffineMap & alignment, const std::vector<Vector3> & moved, const Execution & execution) const
+InteriorDeformation::DeformByFrames(const AffineMap &            alignment,
+                                    const std::vector<Vector3> & moved,
+                                    const Execution &            execution) const
 {
   std::vector<Vector3> points(m_Points.size());
   for (std::size_t i = 0; i < moved.size(); ++i)
   {
     points[m_Exterior[i]] = moved[i];
   }
-  execution.For(m_Interior.size(), [&](std::size_t k) {
-    const Vector3            v = m_Points[m_Interior[k]];
-    std::vector<std::size_t> ids(m_Exterior.size());
-    std::iota(ids.begin(), ids.end(), 0);
-    const auto near = [&](std::size_t a, std::size_t b) {
-      return (m_Points[m_Exterior[a]] - v).squaredNorm() < (m_Points[m_Exterior[b]] - v).squaredNorm();
-    };
-    const std::size_t count = std::min(FramePoints, ids.size());
-    std::partial_sort(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(), near);
-    ids.resize(count);
-    const Frame rest = FindFrame(ids, [&](std::size_t i) { return m_Points[m_Exterior[i]]; });
-    Frame       now = FindFrame(ids, [&](std::size_t i) { return moved[i]; });
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (now.axes.col(axis).dot(alignment.linear * rest.axes.col(axis)) < 0)
+  execution.For(
+    m_Interior.size(),
+    [&](std::size_t k) {
+      const Vector3            v = m_Points[m_Interior[k]];
+      std::vector<std::size_t> ids(m_Exterior.size());
+      std::iota(ids.begin(), ids.end(), 0);
+      const auto near = [&](std::size_t a, std::size_t b) {
+        return (m_Points[m_Exterior[a]] - v).squaredNorm() < (m_Points[m_Exterior[b]] - v).squaredNorm();
+      };
+      const std::size_t count = std::min(FramePoints, ids.size());
+      std::partial_sort(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(), near);
+      ids.resize(count);
+      const Frame rest = FindFrame(ids, [&](std::size_t i) { return m_Points[m_Exterior[i]]; });
+      Frame       now = FindFrame(ids, [&](std::size_t i) { return moved[i]; });
+      for (int axis = 0; axis < 3; ++axis)
       {
-        now.axes.col(axis) = -now.axes.col(axis);
+        if (now.axes.col(axis).dot(alignment.linear * rest.axes.col(axis)) < 0)
+        {
+          now.axes.col(axis) = -now.axes.col(axis);
+        }
       }
-    }
-    points[m_Interior[k]] = now.origin + now.axes * (rest.axes.transpose() * (v - rest.origin));
-  }, 64);
+      points[m_Interior[k]] = now.origin + now.axes * (rest.axes.transpose() * (v - rest.origin));
+    },
+    64);
   return points;
 }
 } // namespace bone

@@ -32,7 +32,10 @@ public:
 
   /** All points of the mesh; `moved` are the new places of the exterior ones, in order. */
   std::vector<Vector3>
-  Deform(InteriorRule rule, const AffineMap & alignment, const std::vector<Vector3> & moved, const Execution & execution = {}) const;
+  Deform(InteriorRule                 rule,
+         const AffineMap &            alignment,
+         const std::vector<Vector3> & moved,
+         const Execution &            execution = {}) const;
 
 private:
   struct Solver;

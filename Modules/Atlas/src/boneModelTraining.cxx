@@ -134,8 +134,8 @@ Combine(const StatisticalModelContent & content, double proportion)
   const Eigen::MatrixXd covariance = both.transpose() * both / static_cast<double>(n - 1);
   const SymmetricEigen  eigen = EigenOf(covariance);
   const Eigen::VectorXd variances = eigen.values.reverse();
-  Eigen::Index                                         k = 0;
-  double                                               explained = 0;
+  Eigen::Index          k = 0;
+  double                explained = 0;
   while (k < variances.size() && variances[k] > 1e-12 * variances[0] &&
          (proportion >= 1.0 || explained < proportion * variances.sum()))
   {
@@ -214,10 +214,10 @@ FindDeviations(const TrainingSet &             set,
 
 /** Aligns the chosen shapes and finds all modes. `shapes` are moved. */
 StatisticalModelContent
-AnalyzeSubjects(const TrainingSet &              set,
-                const std::vector<std::size_t> & chosen,
-                const MeshArrays &               topology,
-                Shapes &                         shapes,
+AnalyzeSubjects(const TrainingSet &                set,
+                const std::vector<std::size_t> &   chosen,
+                const MeshArrays &                 topology,
+                Shapes &                           shapes,
                 const StatisticalModelParameters & parameters,
                 const Execution &                  execution)
 {
@@ -235,8 +235,8 @@ AnalyzeSubjects(const TrainingSet &              set,
                                     ? BernsteinGram(content.mean.maximumDegree, parameters.withinCellWeight)
                                     : Eigen::MatrixXd();
     const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
-    content.density =
-      AnalyzeVectors(DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores, execution.Part(0.4, 1.0));
+    content.density = AnalyzeVectors(
+      DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores, execution.Part(0.4, 1.0));
     content.mean.coefficients.assign(content.density.mean.data(), content.density.mean.data() + dimension);
     if (parameters.combined && content.density.GetNumberOfModes() > 0 && content.shape.GetNumberOfModes() > 0)
     {

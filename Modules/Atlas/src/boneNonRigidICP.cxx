@@ -129,14 +129,17 @@ DeformNonRigidICP(const TriangleSurface &       source,
       const std::vector<Vector3> normals = PointNormals(now);
       std::vector<Vector3>       places = now.points;
       std::vector<double>        weights(now.points.size(), 0.0);
-      execution.Silent().For(now.points.size(), [&](std::size_t v) {
-        const auto match = target.Find(now.points[v], normals[v]);
-        if (match.triangle >= 0 && normals[v].dot(target.NormalAt(match.triangle, match.point)) > NormalCosine)
-        {
-          places[v] = match.point;
-          weights[v] = 1.0;
-        }
-      }, 64);
+      execution.Silent().For(
+        now.points.size(),
+        [&](std::size_t v) {
+          const auto match = target.Find(now.points[v], normals[v]);
+          if (match.triangle >= 0 && normals[v].dot(target.NormalAt(match.triangle, match.point)) > NormalCosine)
+          {
+            places[v] = match.point;
+            weights[v] = 1.0;
+          }
+        },
+        64);
       std::vector<Vector3> moved = system.Solve(stiffness, places, weights);
       move = 0;
       for (std::size_t v = 0; v < moved.size(); ++v)

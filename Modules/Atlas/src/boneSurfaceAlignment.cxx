@@ -169,23 +169,29 @@ private:
     // Normals go by the inverse transpose.
     const Eigen::Matrix3d  forward = back.linear.transpose(), backward = map.linear.transpose();
     std::vector<Candidate> found(m_SourceSamples.size() + m_TargetSamples.size(), Candidate());
-    m_Execution.Silent().For(m_SourceSamples.size(), [&](std::size_t i) {
-      const Sample & s = m_SourceSamples[i];
-      const auto     match = m_Target.Find(map(s.point), forward * s.normal);
-      if (match.triangle >= 0)
-      {
-        found[i] = { match.squaredDistance, s.point, match.point, m_Target.NormalAt(match.triangle, match.point) };
-      }
-    }, Chunk);
-    m_Execution.Silent().For(m_TargetSamples.size(), [&](std::size_t i) {
-      const Sample & s = m_TargetSamples[i];
-      const auto     match = m_Source.Find(back(s.point), backward * s.normal);
-      if (match.triangle >= 0)
-      {
-        const double squared = (map(match.point) - s.point).squaredNorm();
-        found[m_SourceSamples.size() + i] = { squared, match.point, s.point, s.normal };
-      }
-    }, Chunk);
+    m_Execution.Silent().For(
+      m_SourceSamples.size(),
+      [&](std::size_t i) {
+        const Sample & s = m_SourceSamples[i];
+        const auto     match = m_Target.Find(map(s.point), forward * s.normal);
+        if (match.triangle >= 0)
+        {
+          found[i] = { match.squaredDistance, s.point, match.point, m_Target.NormalAt(match.triangle, match.point) };
+        }
+      },
+      Chunk);
+    m_Execution.Silent().For(
+      m_TargetSamples.size(),
+      [&](std::size_t i) {
+        const Sample & s = m_TargetSamples[i];
+        const auto     match = m_Source.Find(back(s.point), backward * s.normal);
+        if (match.triangle >= 0)
+        {
+          const double squared = (map(match.point) - s.point).squaredNorm();
+          found[m_SourceSamples.size() + i] = { squared, match.point, s.point, s.normal };
+        }
+      },
+      Chunk);
     std::vector<Candidate> pairs;
     std::copy_if(found.begin(), found.end(), std::back_inserter(pairs), [](const Candidate & c) {
       return c.squaredDistance >= 0;

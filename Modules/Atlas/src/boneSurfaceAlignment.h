@@ -15,10 +15,10 @@ namespace bone
 struct SurfaceAlignmentParameters
 {
   AlignmentKind kind{ AtlasRegistrationParameters().alignment }; ///< the last step's freedom
-  bool          principalAxes{ true };         ///< start from principal axes; else from where the source is
-  double        trim{ 0.9 };                   ///< share of the point pairs, the nearest, that count
-  int           samples{ 1000 };               ///< points on each surface
-  int           iterations{ 40 };              ///< of each step at most
+  bool          principalAxes{ true }; ///< start from principal axes; else from where the source is
+  double        trim{ 0.9 };           ///< share of the point pairs, the nearest, that count
+  int           samples{ 1000 };       ///< points on each surface
+  int           iterations{ 40 };      ///< of each step at most
 };
 
 /** Where an alignment ended. */

@@ -39,24 +39,27 @@ void
 SortRings(const TriangleSurface & surface, const Execution & execution, RingNeighbors & rings)
 {
   const std::vector<Vector3> normals = PointNormals(surface);
-  execution.Silent().For(surface.points.size(), [&](std::size_t v) {
-    Vector3 u = normals[v].unitOrthogonal();
-    if (normals[v].isZero())
-    {
-      return;
-    }
-    const Vector3 w = normals[v].cross(u);
-    const auto    angle = [&](IdType p) {
-      const Vector3 d = surface.points[p] - surface.points[v];
-      return std::atan2(d.dot(w), d.dot(u));
-    };
-    for (std::size_t r = 1; r + 1 < rings.start[v].size(); ++r)
-    {
-      std::stable_sort(rings.ring[v].begin() + rings.start[v][r],
-                       rings.ring[v].begin() + rings.start[v][r + 1],
-                       [&](IdType a, IdType b) { return angle(a) < angle(b); });
-    }
-  }, Chunk);
+  execution.Silent().For(
+    surface.points.size(),
+    [&](std::size_t v) {
+      Vector3 u = normals[v].unitOrthogonal();
+      if (normals[v].isZero())
+      {
+        return;
+      }
+      const Vector3 w = normals[v].cross(u);
+      const auto    angle = [&](IdType p) {
+        const Vector3 d = surface.points[p] - surface.points[v];
+        return std::atan2(d.dot(w), d.dot(u));
+      };
+      for (std::size_t r = 1; r + 1 < rings.start[v].size(); ++r)
+      {
+        std::stable_sort(rings.ring[v].begin() + rings.start[v][r],
+                         rings.ring[v].begin() + rings.start[v][r + 1],
+                         [&](IdType a, IdType b) { return angle(a) < angle(b); });
+      }
+    },
+    Chunk);
 }
 
 /** A third of the area of the triangles around each point. */
@@ -169,17 +172,21 @@ private:
   {
     const std::size_t          n = m_Rest.size();
     const std::vector<Vector3> normals = PointNormals(m_Source);
-    const Eigen::MatrixXd      attributes = AttributeVectors(m_Source.points, m_Rings, m_P.attributeLayers, m_Execution);
-    Pull                       pull{ std::vector<Vector3>(n), std::vector<double>(n) };
-    m_Execution.Silent().For(n, [&](std::size_t v) {
-      const auto   match = m_Target.Find(m_Source.points[v], normals[v]);
-      const double agreement =
-        match.triangle < 0 ? 0.0 : std::max(0.0, normals[v].dot(m_Target.NormalAt(match.triangle, match.point)));
-      const double change =
-        (attributes.col(static_cast<Eigen::Index>(v)) - m_RestAttributes.col(static_cast<Eigen::Index>(v))).norm();
-      pull.place[v] = match.point;
-      pull.weight[v] = agreement * agreement / (1 + 2 * (change / m_P.attributeWidth) * (change / m_P.attributeWidth));
-    }, Chunk);
+    const Eigen::MatrixXd attributes = AttributeVectors(m_Source.points, m_Rings, m_P.attributeLayers, m_Execution);
+    Pull                  pull{ std::vector<Vector3>(n), std::vector<double>(n) };
+    m_Execution.Silent().For(
+      n,
+      [&](std::size_t v) {
+        const auto   match = m_Target.Find(m_Source.points[v], normals[v]);
+        const double agreement =
+          match.triangle < 0 ? 0.0 : std::max(0.0, normals[v].dot(m_Target.NormalAt(match.triangle, match.point)));
+        const double change =
+          (attributes.col(static_cast<Eigen::Index>(v)) - m_RestAttributes.col(static_cast<Eigen::Index>(v))).norm();
+        pull.place[v] = match.point;
+        pull.weight[v] =
+          agreement * agreement / (1 + 2 * (change / m_P.attributeWidth) * (change / m_P.attributeWidth));
+      },
+      Chunk);
     this->AddTargetPull(pull);
     return pull;
   }
@@ -192,9 +199,12 @@ private:
     const auto &                        points = m_Target.GetSurface().points;
     const std::size_t                   stride = std::max<std::size_t>(1, points.size() / m_P.targetPoints);
     std::vector<DirectedSurface::Match> matches(points.size());
-    m_Execution.Silent().For(points.size() / stride, [&](std::size_t i) {
-      matches[i * stride] = source.Find(points[i * stride], m_Target.GetPointNormals()[i * stride]);
-    }, Chunk);
+    m_Execution.Silent().For(
+      points.size() / stride,
+      [&](std::size_t i) {
+        matches[i * stride] = source.Find(points[i * stride], m_Target.GetPointNormals()[i * stride]);
+      },
+      Chunk);
     std::vector<Vector3> sum(m_Rest.size(), Vector3::Zero());
     std::vector<double>  weight(m_Rest.size(), 0.0);
     for (std::size_t p = 0; p < points.size(); ++p)
@@ -241,7 +251,8 @@ private:
       terms[v] = AcrossFit::MakeTerm(normals[v], pull.place[v] - m_Rest[v], m_P.slide, pull.weight[v] * m_Focus[v]);
     }
     std::vector<Vector3> moved(m_Rest.size());
-    m_Execution.Silent().For(m_Rest.size(), [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); }, Chunk);
+    m_Execution.Silent().For(
+      m_Rest.size(), [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); }, Chunk);
     m_Source.points = std::move(moved);
   }
 
@@ -267,7 +278,7 @@ private:
   TriangleSurface                 m_Source; // where it is now
   const DirectedSurface &         m_Target;
   const AdaptiveFocusParameters & m_P;
-  Execution m_Execution;
+  Execution                       m_Execution;
   RingNeighbors                   m_Rings;
   std::vector<Vector3>            m_Rest;
   Eigen::MatrixXd                 m_RestAttributes;
@@ -316,28 +327,36 @@ FindRings(const TriangleSurface & surface, int rings, const Execution & executio
 }
 
 Eigen::MatrixXd
-AttributeVectors(const std::vector<Vector3> & points, const RingNeighbors & rings, int layers, const Execution & execution)
+AttributeVectors(const std::vector<Vector3> & points,
+                 const RingNeighbors &        rings,
+                 int                          layers,
+                 const Execution &            execution)
 {
   Eigen::MatrixXd attributes = Eigen::MatrixXd::Zero(layers, static_cast<Eigen::Index>(points.size()));
-  execution.Silent().For(points.size(), [&](std::size_t v) {
-    auto column = attributes.col(static_cast<Eigen::Index>(v));
-    for (int layer = 1; layer <= layers; ++layer)
-    {
-      const auto   begin = rings.start[v][layer], count = rings.start[v][layer + 1] - begin;
-      const auto * ring = rings.ring[v].data() + begin;
-      for (std::int32_t i = 0; i < count; ++i)
+  execution.Silent().For(
+    points.size(),
+    [&](std::size_t v) {
+      auto column = attributes.col(static_cast<Eigen::Index>(v));
+      for (int layer = 1; layer <= layers; ++layer)
       {
-        column[layer - 1] += SignedVolume(
-          points[v], points[ring[i]], points[ring[(i + count / 3) % count]], points[ring[(i + 2 * count / 3) % count]]);
+        const auto   begin = rings.start[v][layer], count = rings.start[v][layer + 1] - begin;
+        const auto * ring = rings.ring[v].data() + begin;
+        for (std::int32_t i = 0; i < count; ++i)
+        {
+          column[layer - 1] += SignedVolume(points[v],
+                                            points[ring[i]],
+                                            points[ring[(i + count / 3) % count]],
+                                            points[ring[(i + 2 * count / 3) % count]]);
+        }
+        column[layer - 1] /= std::max(count, 1);
       }
-      column[layer - 1] /= std::max(count, 1);
-    }
-    const double sum = column.cwiseAbs().sum();
-    if (sum > 0)
-    {
-      column /= sum;
-    }
-  }, Chunk);
+      const double sum = column.cwiseAbs().sum();
+      if (sum > 0)
+      {
+        column /= sum;
+      }
+    },
+    Chunk);
   return attributes;
 }
 

@@ -319,3 +319,74 @@ TEST(StatisticalModelEstimator, RunsOnlyWhenSomethingChanged)
   estimator->Update();
   EXPECT_GT(estimator->GetOutput()->GetMTime(), before);
 }
+
+template <typename TMesh>
+class StatisticalModelEstimatorMeshes : public testing::Test
+{
+};
+using MeshTypes = testing::Types<DensityMesh<double>, DensityMesh<float>>;
+TYPED_TEST_SUITE(StatisticalModelEstimatorMeshes, MeshTypes);
+
+TYPED_TEST(StatisticalModelEstimatorMeshes, SubjectsAreInputsOfThePipeline)
+{
+  const auto                               subjects = MakePopulation(5);
+  auto                                     estimator = StatisticalModelEstimator<TypeParam>::New();
+  std::vector<typename TypeParam::Pointer> meshes;
+  for (const MeshArrays & subject : subjects)
+  {
+    meshes.push_back(TypeParam::New());
+    meshes.back()->SetArrays(subject);
+    estimator->AddSubject("subject " + std::to_string(meshes.size()), meshes.back());
+  }
+  estimator->SetVarianceProportion(1.0);
+  estimator->Update();
+  const auto first = Estimate(subjects)->GetOutput()->GetContent();
+  const auto before = estimator->GetOutput()->GetContent();
+  EXPECT_EQ(before.subjects.size(), subjects.size());
+  EXPECT_LT(LargestDistance(before.mean.points, first.mean.points), 1e-4);
+  EXPECT_NEAR(before.shape.totalVariance, first.shape.totalVariance, 1e-4 * first.shape.totalVariance);
+
+  // Without a change nothing runs; with a changed mesh the model is made anew.
+  const auto time = estimator->GetOutput()->GetMTime();
+  estimator->Update();
+  EXPECT_EQ(estimator->GetOutput()->GetMTime(), time);
+  MeshArrays wider = subjects[0];
+  for (Vector3 & x : wider.points)
+  {
+    x.x() *= 1.2;
+  }
+  meshes[0]->SetArrays(wider);
+  estimator->Update();
+  EXPECT_GT(estimator->GetOutput()->GetMTime(), time);
+  EXPECT_GT(LargestDistance(estimator->GetOutput()->GetContent().mean.points, before.mean.points), 1e-3);
+
+  estimator->SetInput(MakeSet(subjects));
+  EXPECT_THROW(estimator->Update(), itk::ExceptionObject);
+  estimator->RemoveSubjects();
+  estimator->Update();
+  EXPECT_LT(LargestDistance(estimator->GetOutput()->GetContent().mean.points, first.mean.points), 1e-12);
+}
+
+TEST(StatisticalModelEstimator, AChangedMeshOfATrainingSetMakesTheModelAnew)
+{
+  const auto subjects = MakePopulation(4);
+  auto       set = MeshTrainingSet<>::New();
+  auto       mesh = DensityMesh<double>::New();
+  mesh->SetArrays(subjects[0]);
+  set->AddSubject("first", mesh);
+  for (std::size_t i = 1; i < subjects.size(); ++i)
+  {
+    auto other = DensityMesh<double>::New();
+    other->SetArrays(subjects[i]);
+    set->AddSubject("other", other);
+  }
+  auto estimator = Estimator::New();
+  estimator->SetInput(set);
+  estimator->Update();
+  const auto time = estimator->GetOutput()->GetMTime();
+  estimator->Update();
+  EXPECT_EQ(estimator->GetOutput()->GetMTime(), time);
+  mesh->SetArrays(subjects[1]);
+  estimator->Update();
+  EXPECT_GT(estimator->GetOutput()->GetMTime(), time);
+}

@@ -70,9 +70,9 @@ struct VoxelBox
 struct LabelVoxels
 {
   VoxelBox                   box;
-  std::vector<unsigned char> inside;       ///< box.Count() flags, the first axis fastest
-  double                     low{ 0.0 };   ///< height of the label's lowest voxel along the frame's normal, mm
-  double                     high{ 0.0 };  ///< and of its highest
+  std::vector<unsigned char> inside;      ///< box.Count() flags, the first axis fastest
+  double                     low{ 0.0 };  ///< height of the label's lowest voxel along the frame's normal, mm
+  double                     high{ 0.0 }; ///< and of its highest
 };
 
 /** An image's slices in the frame of the stack. */

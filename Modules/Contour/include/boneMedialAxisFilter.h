@@ -15,8 +15,9 @@ namespace bone
  * The output has the input's closed contours and, for each of them that is no hole and holds nothing but holes, the
  * axis of the bone in it: polylines with `axis` set, the contour's layer + 1, its region, and each point's `clearance`.
  * Branches share their end points and form a tree, with a cycle around each hole; a round contour has a single point.
- * Axes of the input are replaced. The axis is that of the contours' Voronoi diagram, cut back from its ends by the chord
- * residual of R. Ogniewicz, O. Kuebler, doi:10.1016/0031-3203(94)00105-U. Parameters: \ref MedialAxisParameters. */
+ * Axes of the input are replaced. The axis is that of the contours' Voronoi diagram, cut back from its ends by the
+ * chord residual of R. Ogniewicz, O. Kuebler, doi:10.1016/0031-3203(94)00105-U. Parameters: \ref MedialAxisParameters.
+ */
 class MedialAxisFilter : public ContourStackFilter
 {
 public:

@@ -103,7 +103,8 @@ SnakeContourFilter<TInputImage, TLabelImage>::MakeFrame(std::array<unsigned int,
 
 template <typename TInputImage, typename TLabelImage>
 PlaneSource
-SnakeContourFilter<TInputImage, TLabelImage>::MakePlaneSource(const SliceFrame & frame, const std::array<unsigned int, 3> & axes) const
+SnakeContourFilter<TInputImage, TLabelImage>::MakePlaneSource(const SliceFrame &                  frame,
+                                                              const std::array<unsigned int, 3> & axes) const
 {
   const auto *               buffer = this->GetInput()->GetBufferPointer();
   const auto *               table = this->GetInput()->GetOffsetTable();
@@ -141,7 +142,8 @@ SnakeContourFilter<TInputImage, TLabelImage>::MakePlaneSource(const SliceFrame &
 
 template <typename TInputImage, typename TLabelImage>
 auto
-SnakeContourFilter<TInputImage, TLabelImage>::FindLabel(const SliceFrame & frame, LabelVoxels & voxels) const -> typename TLabelImage::RegionType
+SnakeContourFilter<TInputImage, TLabelImage>::FindLabel(const SliceFrame & frame, LabelVoxels & voxels) const ->
+  typename TLabelImage::RegionType
 {
   const LabelImageType * labels = this->GetLabelImage();
   itk::Index<3>          first;
@@ -170,8 +172,10 @@ SnakeContourFilter<TInputImage, TLabelImage>::FindLabel(const SliceFrame & frame
   }
   if (first[0] > last[0])
   {
-    itkExceptionMacro("The input 'LabelImage' has no voxel "
-                      << (m_Parameters.label != 0 ? "of label " + std::to_string(m_Parameters.label) : std::string("that is not 0")) << '.');
+    itkExceptionMacro(
+      "The input 'LabelImage' has no voxel "
+      << (m_Parameters.label != 0 ? "of label " + std::to_string(m_Parameters.label) : std::string("that is not 0"))
+      << '.');
   }
   typename TLabelImage::RegionType region;
   for (unsigned int a = 0; a < 3; ++a)
@@ -188,7 +192,7 @@ template <typename TInputImage, typename TLabelImage>
 LabelVoxels
 SnakeContourFilter<TInputImage, TLabelImage>::CropLabel(const SliceFrame & frame) const
 {
-  LabelVoxels voxels;
+  LabelVoxels            voxels;
   const LabelImageType * labels = this->GetLabelImage();
   auto                   crop = this->FindLabel(frame, voxels);
   crop.PadByRadius(4);

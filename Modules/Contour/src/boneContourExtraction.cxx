@@ -24,8 +24,8 @@ SectionsFromLabel(const SliceFrame &           frame,
                   const Execution &            execution,
                   ExtractionReport &           report)
 {
-  const VoxelBox & box = label.box;
-  const LabelField field(box, label.inside, 0.8, execution.Part(0.0, 0.5));
+  const VoxelBox &     box = label.box;
+  const LabelField     field(box, label.inside, 0.8, execution.Part(0.0, 0.5));
   std::vector<Polygon> corners(1);
   for (int c = 0; c < 8; ++c)
   {
@@ -34,8 +34,8 @@ SectionsFromLabel(const SliceFrame &           frame,
     corners[0].push_back({ corner.dot(frame.u), corner.dot(frame.v) });
   }
   const PlaneGrid grid = CoveringGrid(corners, 0.0, frame.origin, frame.pixel);
-  auto            sections = parameters.followLabel ? PlaceSectionsThrough(frame.slices, label.low, parameters.sliceStep)
-                                           : PlaceSections(frame.slices, label.low, label.high, parameters.sliceStep);
+  auto sections = parameters.followLabel ? PlaceSectionsThrough(frame.slices, label.low, parameters.sliceStep)
+                                         : PlaceSections(frame.slices, label.low, label.high, parameters.sliceStep);
   if (sections.empty())
   {
     throw std::runtime_error("The label lies beyond the CT's slices; are both images of the same space?");
@@ -54,7 +54,7 @@ SectionsFromLabel(const SliceFrame &           frame,
   if (sum > 0)
   {
     report.warnings.push_back("Left out " + std::to_string(sum) + " contours or holes smaller than " +
-                                std::to_string(parameters.minimumContourArea) + " mm^2.");
+                              std::to_string(parameters.minimumContourArea) + " mm^2.");
   }
   return sections;
 }
@@ -147,10 +147,10 @@ SetOpenEnds(const SliceFrame &           frame,
   if (start || end)
   {
     report.warnings.push_back(std::string("The bone leaves the image at its ") +
-                                (start && end ? "first and last"
-                                 : start      ? "first"
-                                              : "last") +
-                                " slice; it is cut flat there.");
+                              (start && end ? "first and last"
+                               : start      ? "first"
+                                            : "last") +
+                              " slice; it is cut flat there.");
   }
   const Vector2 last =
     frame.origin + Vector2((frame.size[0] - 1) * frame.pixel.x(), (frame.size[1] - 1) * frame.pixel.y());
@@ -179,9 +179,9 @@ ExtractContours(const SliceFrame &             frame,
                 ExtractionReport &             report)
 {
   const ExtractionParameters parameters(given, frame.pixel.maxCoeff(), frame.slices.step);
-  std::vector<Section>       sections =
-    label != nullptr ? SectionsFromLabel(frame, *label, parameters, execution.Part(0.0, 0.3), report)
-                     : SectionsFromContours(frame, *initial, parameters);
+  std::vector<Section>       sections = label != nullptr
+                                          ? SectionsFromLabel(frame, *label, parameters, execution.Part(0.0, 0.3), report)
+                                          : SectionsFromContours(frame, *initial, parameters);
   if (label != nullptr && parameters.refineLabelOutline && !parameters.followLabel)
   {
     RefineSections(sections, planes, frame.pixel, parameters, execution.Part(0.3, 0.4), report);
@@ -195,8 +195,8 @@ ExtractContours(const SliceFrame &             frame,
   if (!(brightest >= parameters.boneThreshold))
   {
     std::ostringstream text;
-    text << "The CT holds no bone: within the contours its highest value is " << brightest
-         << ", below BoneThreshold (" << parameters.boneThreshold << "). Do the CT and its start belong together?";
+    text << "The CT holds no bone: within the contours its highest value is " << brightest << ", below BoneThreshold ("
+         << parameters.boneThreshold << "). Do the CT and its start belong together?";
     throw std::runtime_error(text.str());
   }
   if (label == nullptr || parameters.followLabel)

@@ -41,12 +41,13 @@ ContourResampleFilter::SampleForTarget(const Execution & execution)
   constexpr double tolerance = 0.02;
   constexpr int    mostTrials = 8;
   const bool       samples = m_Parameters.targetNumberOfSamples > 0;
-  const auto       target = static_cast<double>(samples ? m_Parameters.targetNumberOfSamples : m_Parameters.targetNumberOfTetrahedra);
-  double           bestScale = 1.0;
-  double           bestError = std::numeric_limits<double>::max();
-  double           lastScale = 0.0;
-  double           lastError = 0.0;
-  double           slope = -1.0;
+  const auto       target =
+    static_cast<double>(samples ? m_Parameters.targetNumberOfSamples : m_Parameters.targetNumberOfTetrahedra);
+  double bestScale = 1.0;
+  double bestError = std::numeric_limits<double>::max();
+  double lastScale = 0.0;
+  double lastError = 0.0;
+  double slope = -1.0;
   for (int trial = 0; trial < mostTrials && bestError > tolerance; ++trial)
   {
     // A few trials do for most: the first ones take the larger shares.

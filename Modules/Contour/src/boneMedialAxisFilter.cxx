@@ -21,8 +21,8 @@ MedialAxisFilter::MakeSlice(const ContourStack & input, std::size_t k)
 {
   const ContourSlice & slice = input.GetSlices()[k];
   MedialAxisParameters parameters = m_Parameters;
-  const double height = input.GetHeight(k);
-  ContourSlice result;
+  const double         height = input.GetHeight(k);
+  ContourSlice         result;
   result.origin = slice.origin;
   int                  nextId = 0;
   std::vector<Polygon> polygons;
@@ -62,7 +62,8 @@ MedialAxisFilter::MakeSlice(const ContourStack & input, std::size_t k)
     {
       length += (polygons[c][(i + 1) % polygons[c].size()] - polygons[c][i]).norm();
     }
-    parameters.spacing = m_Parameters.spacing > 0.0 ? m_Parameters.spacing : length / static_cast<double>(polygons[c].size());
+    parameters.spacing =
+      m_Parameters.spacing > 0.0 ? m_Parameters.spacing : length / static_cast<double>(polygons[c].size());
     for (AxisBranch & branch : ComputeMedialAxis(border, parameters))
     {
       Contour axis;

@@ -24,7 +24,7 @@ Tube(double x, double y, double z)
 
 struct Chain
 {
-  Snake::Pointer                   snake = Snake::New();
+  Snake::Pointer                 snake = Snake::New();
   ContourResampleFilter::Pointer resample = ContourResampleFilter::New();
   MedialAxisFilter::Pointer      axes = MedialAxisFilter::New();
 

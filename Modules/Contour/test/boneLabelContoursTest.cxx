@@ -124,7 +124,7 @@ TEST(Section, DropsWhatExistsOnOneSliceOnly)
   for (int k = 0; k < 8; ++k)
   {
     Section section{ 1.0 * k, { { Ellipse(10, 10, 60), {}, {}, {} } } };
-    Polygon     hole = Ellipse(2, 2, 20);
+    Polygon hole = Ellipse(2, 2, 20);
     std::reverse(hole.begin(), hole.end());
     if (k == 3)
     {
@@ -148,7 +148,7 @@ TEST(Section, KeepsAHoleThatIsTheEndOfANotch)
 {
   // A ring open to one side below, closed on the last slice before it is solid.
   std::vector<Section> sections;
-  Polygon                  hole = Ellipse(5, 5, 40);
+  Polygon              hole = Ellipse(5, 5, 40);
   std::reverse(hole.begin(), hole.end());
   Polygon open = Ellipse(10, 10, 60);
   open.erase(open.begin(), open.begin() + 4);

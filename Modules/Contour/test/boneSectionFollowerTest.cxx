@@ -73,7 +73,7 @@ public:
     return sections[slice].pieces.size();
   }
 
-  std::vector<Section> sections;
+  std::vector<Section>     sections;
   std::vector<std::string> events;
 
 private:

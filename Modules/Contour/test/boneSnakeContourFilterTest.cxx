@@ -357,7 +357,8 @@ TEST(SnakeContourFilter, RefusesBadInputInPlainWords)
 
 template <typename TPixel>
 class SnakeContourFilterTypes : public testing::Test
-{};
+{
+};
 using PixelTypes = testing::Types<unsigned char, short, unsigned short, int, float, double>;
 TYPED_TEST_SUITE(SnakeContourFilterTypes, PixelTypes);
 

@@ -101,6 +101,13 @@ public:
   {
     return m_Slices[k].origin.dot(m_Normal);
   }
+  /** Mean distance of neighbouring slices (mm); 0 for fewer than two. */
+  double
+  GetMeanSliceDistance() const
+  {
+    const std::size_t count = m_Slices.size();
+    return count < 2 ? 0.0 : (this->GetHeight(count - 1) - this->GetHeight(0)) / static_cast<double>(count - 1);
+  }
   /** In-plane coordinates (mm) of a physical point: (p . U, p . V). */
   Vector2
   ToPlane(const Vector3 & p) const

@@ -26,8 +26,8 @@ namespace bone
  *
  * Loops run on as many work units as the filter has (SetNumberOfWorkUnits), on the calling thread too; what a body
  * writes must belong to its index alone, and the result then does not depend on the number of threads. The first
- * exception of a body ends the loop and is thrown. A loop within a loop's body runs on the body's own thread. Outside of
- * a filter (the default constructor) there is no progress and no abort, and ITK's default number of work units.
+ * exception of a body ends the loop and is thrown. A loop within a loop's body runs on the body's own thread. Outside
+ * of a filter (the default constructor) there is no progress and no abort, and ITK's default number of work units.
  *
  * Copies are cheap and share what was reported. Report() and loops are called from the thread that runs the filter, or
  * from a loop's body. */

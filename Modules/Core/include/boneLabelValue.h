@@ -6,7 +6,8 @@
 
 namespace bone
 {
-/** Whether a voxel of a label map, of any scalar type, has a label; label 0 stands for every value but 0. NaN is none. */
+/** Whether a voxel of a label map, of any scalar type, has a label; label 0 stands for every value but 0. NaN is none.
+ */
 template <typename TValue>
 bool
 HasLabel(const TValue & value, int label)

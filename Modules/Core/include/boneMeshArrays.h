@@ -16,12 +16,12 @@ namespace bone
  * Index p runs over points, t over tetrahedra. Arrays of attributes are either empty or of full length. */
 struct MeshCells
 {
-  std::vector<Id4>     tetrahedra; ///< #t, positive orientation: (b-a) x (c-a) . (d-a) > 0
-  std::vector<Id4>     neighbors;  ///< #t, neighbour i lies across the face opposite vertex i, -1 at the boundary
-  std::vector<int>     layer;      ///< #p, 0 on the exterior contour, counting inward
-  std::vector<int>     slice;      ///< #p, index of the slice the point was tiled on
-  std::vector<int>     region;     ///< #t, see \ref Region
-  std::vector<int>     degree;     ///< #t, degree of each tetrahedron's Bernstein polynomial; empty: no density
+  std::vector<Id4> tetrahedra; ///< #t, positive orientation: (b-a) x (c-a) . (d-a) > 0
+  std::vector<Id4> neighbors;  ///< #t, neighbour i lies across the face opposite vertex i, -1 at the boundary
+  std::vector<int> layer;      ///< #p, 0 on the exterior contour, counting inward
+  std::vector<int> slice;      ///< #p, index of the slice the point was tiled on
+  std::vector<int> region;     ///< #t, see \ref Region
+  std::vector<int> degree;     ///< #t, degree of each tetrahedron's Bernstein polynomial; empty: no density
 
   /** Bernstein coefficients, #t rows of BernsteinCount(maximumDegree), row-major; a tetrahedron of lower degree uses
    * the first BernsteinCount(degree) of its row, the rest are 0. Order: see \ref Bernstein. */

@@ -26,10 +26,10 @@ namespace bone
  * BONE_PARAMETER_STRUCT(DensityFitParameters, BONE_DENSITY_FIT_PARAMETERS);
  * \endcode
  *
- * A line of `value` is: type, member of the struct, name of the filter's Set and Get, default, range (for numbers), unit
- * (empty: none), name of the option on the command line (empty: it has none) and one line of help; a line of `flag` is
- * the same for a bool, without range and unit. Types are numbers, enumerations with ParameterChoices, and vectors of
- * numbers. The table is the only place of a default. From it come
+ * A line of `value` is: type, member of the struct, name of the filter's Set and Get, default, range (for numbers),
+ * unit (empty: none), name of the option on the command line (empty: it has none) and one line of help; a line of
+ * `flag` is the same for a bool, without range and unit. Types are numbers, enumerations with ParameterChoices, and
+ * vectors of numbers. The table is the only place of a default. From it come
  * - the struct: `Visit()`, `Verify()`, == and !=;
  * - the filter's Set and Get, which mark it modified on change alone (BONE_FILTER_PARAMETERS), and its PrintSelf
  *   (PrintParameters);
@@ -201,80 +201,98 @@ PrintParameters(std::ostream & os, const TIndent & indent, const TParameters & p
 
 #define BONE_PARAMETER_MEMBER_VALUE(type, member, name, initial, range, unit, option, help) type member{ initial };
 #define BONE_PARAMETER_MEMBER_FLAG(member, name, initial, option, help) bool member{ initial };
-#define BONE_PARAMETER_VISIT_VALUE(type, member, name, initial, range, unit, option, help) \
+#define BONE_PARAMETER_VISIT_VALUE(type, member, name, initial, range, unit, option, help)                             \
   visit(::bone::ParameterField{ #member, #name, range, unit, option, help }, self.member);
-#define BONE_PARAMETER_VISIT_FLAG(member, name, initial, option, help) \
+#define BONE_PARAMETER_VISIT_FLAG(member, name, initial, option, help)                                                 \
   visit(::bone::ParameterField{ #member, #name, ::bone::ParameterRange::Any(), "", option, help }, self.member);
 #define BONE_PARAMETER_EQUAL_VALUE(type, member, name, initial, range, unit, option, help) &&a.member == b.member
 #define BONE_PARAMETER_EQUAL_FLAG(member, name, initial, option, help) &&a.member == b.member
-#define BONE_PARAMETER_ACCESS_VALUE(type, member, name, initial, range, unit, option, help) \
-  virtual void Set##name(type value)                                                        \
-  {                                                                                         \
-    if (!(m_Parameters.member == value))                                                    \
-    {                                                                                       \
-      m_Parameters.member = std::move(value);                                               \
-      this->Modified();                                                                     \
-    }                                                                                       \
-  }                                                                                         \
-  virtual const type & Get##name() const { return m_Parameters.member; }
-#define BONE_PARAMETER_ACCESS_FLAG(member, name, initial, option, help)                  \
-  BONE_PARAMETER_ACCESS_VALUE(bool, member, name, initial, , , option, help)             \
-  virtual void name##On() { this->Set##name(true); }                                     \
-  virtual void name##Off() { this->Set##name(false); }
+#define BONE_PARAMETER_ACCESS_VALUE(type, member, name, initial, range, unit, option, help)                            \
+  virtual void Set##name(type value)                                                                                   \
+  {                                                                                                                    \
+    if (!(m_Parameters.member == value))                                                                               \
+    {                                                                                                                  \
+      m_Parameters.member = std::move(value);                                                                          \
+      this->Modified();                                                                                                \
+    }                                                                                                                  \
+  }                                                                                                                    \
+  virtual const type & Get##name() const                                                                               \
+  {                                                                                                                    \
+    return m_Parameters.member;                                                                                        \
+  }
+#define BONE_PARAMETER_ACCESS_FLAG(member, name, initial, option, help)                                                \
+  BONE_PARAMETER_ACCESS_VALUE(bool, member, name, initial, , , option, help)                                           \
+  virtual void name##On()                                                                                              \
+  {                                                                                                                    \
+    this->Set##name(true);                                                                                             \
+  }                                                                                                                    \
+  virtual void name##Off()                                                                                             \
+  {                                                                                                                    \
+    this->Set##name(false);                                                                                            \
+  }
 
 /** Defines the struct of a table; see \ref Parameters. */
-#define BONE_PARAMETER_STRUCT(Struct, TABLE)                                               \
-  struct Struct                                                                            \
-  {                                                                                        \
-    TABLE(BONE_PARAMETER_MEMBER_VALUE, BONE_PARAMETER_MEMBER_FLAG)                         \
-    /** Calls visit(ParameterField, value) for each parameter, in the table's order. */    \
-    template <typename TSelf, typename TVisitor>                                           \
-    static void Visit(TSelf & self, TVisitor && visit)                                     \
-    {                                                                                      \
-      TABLE(BONE_PARAMETER_VISIT_VALUE, BONE_PARAMETER_VISIT_FLAG)                         \
-    }                                                                                      \
-    /** Throws std::invalid_argument that names a parameter out of its range. */           \
-    void Verify() const                                                                    \
-    {                                                                                      \
-      Visit(*this, [](const ::bone::ParameterField & field, const auto & value) {          \
-        ::bone::VerifyParameter(field, value);                                             \
-      });                                                                                  \
-    }                                                                                      \
-    friend bool operator==(const Struct & a, const Struct & b)                             \
-    {                                                                                      \
-      return true TABLE(BONE_PARAMETER_EQUAL_VALUE, BONE_PARAMETER_EQUAL_FLAG);            \
-    }                                                                                      \
-    friend bool operator!=(const Struct & a, const Struct & b) { return !(a == b); }       \
+#define BONE_PARAMETER_STRUCT(Struct, TABLE)                                                                           \
+  struct Struct                                                                                                        \
+  {                                                                                                                    \
+    TABLE(BONE_PARAMETER_MEMBER_VALUE, BONE_PARAMETER_MEMBER_FLAG)                                                     \
+    /** Calls visit(ParameterField, value) for each parameter, in the table's order. */                                \
+    template <typename TSelf, typename TVisitor>                                                                       \
+    static void                                                                                                        \
+    Visit(TSelf & self, TVisitor && visit)                                                                             \
+    {                                                                                                                  \
+      TABLE(BONE_PARAMETER_VISIT_VALUE, BONE_PARAMETER_VISIT_FLAG)                                                     \
+    }                                                                                                                  \
+    /** Throws std::invalid_argument that names a parameter out of its range. */                                       \
+    void                                                                                                               \
+    Verify() const                                                                                                     \
+    {                                                                                                                  \
+      Visit(*this,                                                                                                     \
+            [](const ::bone::ParameterField & field, const auto & value) { ::bone::VerifyParameter(field, value); });  \
+    }                                                                                                                  \
+    friend bool                                                                                                        \
+    operator==(const Struct & a, const Struct & b)                                                                     \
+    {                                                                                                                  \
+      return true TABLE(BONE_PARAMETER_EQUAL_VALUE, BONE_PARAMETER_EQUAL_FLAG);                                        \
+    }                                                                                                                  \
+    friend bool                                                                                                        \
+    operator!=(const Struct & a, const Struct & b)                                                                     \
+    {                                                                                                                  \
+      return !(a == b);                                                                                                \
+    }                                                                                                                  \
   }
 
 /** Gives a process object its parameters: the member m_Parameters, SetParameters, GetParameters, Set and Get of each,
  * and VerifyParameters, for VerifyPreconditions, which throws itk::ExceptionObject. To stand in its public part. */
-#define BONE_FILTER_PARAMETERS(Struct, TABLE)                                              \
-  TABLE(BONE_PARAMETER_ACCESS_VALUE, BONE_PARAMETER_ACCESS_FLAG)                           \
-  void SetParameters(const Struct & parameters)                                            \
-  {                                                                                        \
-    if (!(m_Parameters == parameters))                                                     \
-    {                                                                                      \
-      m_Parameters = parameters;                                                           \
-      this->Modified();                                                                    \
-    }                                                                                      \
-  }                                                                                        \
-  const Struct & GetParameters() const { return m_Parameters; }                            \
-                                                                                           \
-protected:                                                                                 \
-  void VerifyParameters() const                                                            \
-  {                                                                                        \
-    try                                                                                    \
-    {                                                                                      \
-      m_Parameters.Verify();                                                               \
-    }                                                                                      \
-    catch (const std::invalid_argument & error)                                            \
-    {                                                                                      \
-      itkExceptionMacro("" << error.what());                                               \
-    }                                                                                      \
-  }                                                                                        \
-  Struct m_Parameters;                                                                     \
-                                                                                           \
+#define BONE_FILTER_PARAMETERS(Struct, TABLE)                                                                          \
+  TABLE(BONE_PARAMETER_ACCESS_VALUE, BONE_PARAMETER_ACCESS_FLAG)                                                       \
+  void SetParameters(const Struct & parameters)                                                                        \
+  {                                                                                                                    \
+    if (!(m_Parameters == parameters))                                                                                 \
+    {                                                                                                                  \
+      m_Parameters = parameters;                                                                                       \
+      this->Modified();                                                                                                \
+    }                                                                                                                  \
+  }                                                                                                                    \
+  const Struct & GetParameters() const                                                                                 \
+  {                                                                                                                    \
+    return m_Parameters;                                                                                               \
+  }                                                                                                                    \
+                                                                                                                       \
+protected:                                                                                                             \
+  void VerifyParameters() const                                                                                        \
+  {                                                                                                                    \
+    try                                                                                                                \
+    {                                                                                                                  \
+      m_Parameters.Verify();                                                                                           \
+    }                                                                                                                  \
+    catch (const std::invalid_argument & error)                                                                        \
+    {                                                                                                                  \
+      itkExceptionMacro("" << error.what());                                                                           \
+    }                                                                                                                  \
+  }                                                                                                                    \
+  Struct m_Parameters;                                                                                                 \
+                                                                                                                       \
 public:
 
 #endif

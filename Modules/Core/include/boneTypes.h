@@ -38,7 +38,6 @@ enum Region : int
   Outside = 0,
   Cortical = 1,
   Trabecular = 2,
-  Spongy = Trabecular,
   Medullary = 3
 };
 

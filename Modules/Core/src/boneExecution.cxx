@@ -15,10 +15,10 @@ namespace bone
 {
 struct Execution::State
 {
-  itk::ProcessObject *         filter{ nullptr };
+  itk::ProcessObject *            filter{ nullptr };
   itk::MultiThreaderBase::Pointer threader;
-  std::thread::id              caller{ std::this_thread::get_id() };
-  double                       reported{ 0.0 }; ///< the caller's alone
+  std::thread::id                 caller{ std::this_thread::get_id() };
+  double                          reported{ 0.0 }; ///< the caller's alone
 };
 
 namespace

@@ -81,12 +81,12 @@ PrincipalModes::Posterior(const std::vector<Eigen::Index> & entries, const Eigen
     q.row(i) = modes.row(entries[i]).cwiseProduct(deviation.transpose()) / noise;
     residual[i] = (values[i] - mean[entries[i]]) / noise;
   }
-  const Eigen::MatrixXd                                precision = Eigen::MatrixXd::Identity(k, k) + q.transpose() * q;
-  const Eigen::LLT<Eigen::MatrixXd>                    factor(precision);
-  const Eigen::VectorXd                                b = factor.solve(q.transpose() * residual);
-  const Eigen::MatrixXd                                scale = deviation.asDiagonal();
-  const Eigen::MatrixXd                                half = factor.matrixL().solve(scale);
-  const SymmetricEigen eigen = EigenOf(half.transpose() * half);
+  const Eigen::MatrixXd             precision = Eigen::MatrixXd::Identity(k, k) + q.transpose() * q;
+  const Eigen::LLT<Eigen::MatrixXd> factor(precision);
+  const Eigen::VectorXd             b = factor.solve(q.transpose() * residual);
+  const Eigen::MatrixXd             scale = deviation.asDiagonal();
+  const Eigen::MatrixXd             half = factor.matrixL().solve(scale);
+  const SymmetricEigen              eigen = EigenOf(half.transpose() * half);
 
   PrincipalModes posterior;
   posterior.mean = this->Synthesize(b);

@@ -45,7 +45,8 @@ TEST(Execution, CallsTheBodyOnceForEachIndex)
     for (const std::size_t count : { 0u, 1u, 255u, 256u, 257u, 5000u })
     {
       std::vector<int> calls(count, 0);
-      bone::Execution().For(count, [&](std::size_t i) { ++calls[i]; }, chunk);
+      bone::Execution().For(
+        count, [&](std::size_t i) { ++calls[i]; }, chunk);
       EXPECT_EQ(calls, std::vector<int>(count, 1));
     }
   }

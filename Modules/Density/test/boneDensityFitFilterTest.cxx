@@ -191,7 +191,7 @@ TEST(DensityFitFilter, ErrorFallsWithTheDegreeDownToThatOfLinearInterpolation)
     auto filter = MakeFit(mesh, image.GetPointer(), degree);
     filter->Update();
     const MeshCells & fitted = filter->GetOutput()->GetCells();
-    double             worst = 0;
+    double            worst = 0;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     {
       for (const Barycentric & mu : { Barycentric(0.25, 0.25, 0.25, 0.25), Barycentric(0.1, 0.3, 0.5, 0.1) })

@@ -44,15 +44,11 @@ struct LevelReport
 struct BuildReport
 {
   std::string              version;
-  std::string              image;
-  std::string              labels;
-  int                      label{ 0 };
-  std::string              initialContours;
-  int                      degree{ 0 };
-  bool                     continuous{ false };
-  IdType                   askedTetrahedra{ 0 };
+  BuildFiles               files;
+  BuildParameters          parameters; ///< of the plan as asked for, of the stages as they ran
   Resolution               resolution;
   std::size_t              slices{ 0 };
+  double                   meanSliceDistance{ 0.0 }; ///< mm, between the slices kept
   TilingReport             tiling;
   std::vector<LevelReport> levels;
   std::vector<std::string> warnings;

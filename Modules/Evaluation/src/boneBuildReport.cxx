@@ -170,10 +170,11 @@ DescribeLevel(const MeshArrays & mesh)
 std::string
 ToText(const BuildReport & report)
 {
-  std::ostringstream os;
-  os << report.image << ": " << report.slices << " slices " << Fixed(report.resolution.sliceStep, 2)
+  std::ostringstream           os;
+  const DensityFitParameters & fit = report.parameters.fit;
+  os << report.files.image << ": " << report.slices << " slices, on average " << Fixed(report.meanSliceDistance, 2)
      << " mm apart, contour points at most " << Fixed(report.resolution.contourSpacing, 2) << " mm apart, degree "
-     << report.degree << (report.continuous ? ", continuous" : "") << "\n\n";
+     << fit.degree << (fit.continuous ? ", continuous" : "") << "\n\n";
   int level = 0;
   Row(os, report, "", [&level](const LevelReport &) { return "level " + std::to_string(++level); });
   Row(os, report, "tetrahedra", [](const LevelReport & l) { return std::to_string(l.tetrahedra); });
@@ -211,21 +212,14 @@ ToJson(const BuildReport & report)
 {
   nlohmann::ordered_json json;
   json["version"] = report.version;
-  json["input"] = { { "image", report.image } };
-  if (!report.labels.empty())
-  {
-    json["input"]["labels"] = report.labels;
-    json["input"]["label"] = report.label;
-  }
-  if (!report.initialContours.empty())
-  {
-    json["input"]["initialContours"] = report.initialContours;
-  }
-  json["parameters"] = { { "tetrahedra", report.askedTetrahedra },
-                         { "sliceStepMm", report.resolution.sliceStep },
-                         { "contourSpacingMm", report.resolution.contourSpacing },
-                         { "degree", report.degree },
-                         { "continuous", report.continuous } };
+  json["input"] = { { "image", report.files.image },
+                    { "labels", report.files.labels },
+                    { "initialContours", report.files.initialContours },
+                    { "structure", report.files.structure } };
+  json["parameters"] = nlohmann::ordered_json::parse(ToJson(report.parameters));
+  json["resolution"] = { { "meanSliceDistanceMm", report.meanSliceDistance },
+                         { "askedSliceStepMm", report.resolution.sliceStep },
+                         { "contourSpacingMm", report.resolution.contourSpacing } };
   json["slices"] = report.slices;
   json["tiling"] = ToJson(report.tiling);
   json["levels"] = nlohmann::ordered_json::array();

@@ -15,8 +15,8 @@ namespace bone
 {
 namespace
 {
-constexpr int Side = 420; // pixels of a panel's longer side
-constexpr int Head = 30;  // above each row, for its name
+constexpr int Side = 420;  // pixels of a panel's longer side
+constexpr int Head = 30;   // above each row, for its name
 constexpr int Least = 220; // of a panel's width, for its name
 
 /** Size of what is looked at, across and up, mm. */

@@ -12,9 +12,9 @@ namespace bone
 /** \defgroup ContourImage Contours to label maps and back
  * \{ */
 
-/** A label map on the grid of `grid`: a voxel has the region (1 cortical, 2 trabecular, 3 medullary; 0 outside) that its
- * centre has on the nearest of the stack's slices, none beyond half a step past the first and the last. The grid may
- * lie obliquely to the slices. */
+/** A label map on the grid of `grid`: a voxel has the region (1 cortical, 2 trabecular, 3 medullary; 0 outside) that
+ * its centre has on the nearest of the stack's slices, none beyond half a step past the first and the last. The grid
+ * may lie obliquely to the slices. */
 LabelImage::Pointer
 RasterizeContours(const ContourStack * stack, const itk::ImageBase<3> * grid);
 

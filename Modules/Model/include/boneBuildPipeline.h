@@ -4,6 +4,7 @@
 #ifndef boneBuildPipeline_h
 #define boneBuildPipeline_h
 
+#include "boneBuildParameters.h"
 #include "boneHierarchyLevelFilter.h"
 #include "boneImageIO.h"
 
@@ -30,8 +31,8 @@ DescribeLosses(const TilingReport & report);
 /** \class BuildPipeline
  * \brief The whole job as one lazy ITK pipeline: from a CT to radiographs of each level of its density model.
  *
- * CT, labels or contours -> snake contours -> slices kept -> resampled contours -> medial axes -> tiling -> mesh quality -> density
- * fit
+ * CT, labels or contours -> snake contours -> slices kept -> resampled contours -> medial axes -> tiling -> mesh
+ * quality -> density fit
  * -> collapse -> one radiograph a level. Parameters are set on the stages; an update runs the stages whose input or
  * parameters changed and those after them, and no others. */
 class BuildPipeline
@@ -67,8 +68,15 @@ public:
   SetGeometry(const XRayGeometry * geometry);
   /** \} */
 
-  /** Largest spacing (mm) of the contours' samples on a slice; where they curve they are closer: a third of it at least,
-   * and with a tolerance that goes with its square, so that the number of samples goes with its inverse. */
+  /** Sets the parameters of all stages; those of the plan are its own affair (\ref PlanBuild). */
+  void
+  SetParameters(const BuildParameters & parameters);
+  /** The parameters of all stages as they are; the plan's are left as they come. */
+  void
+  GetParameters(BuildParameters & parameters) const;
+
+  /** Largest spacing (mm) of the contours' samples on a slice; where they curve they are closer: a third of it at
+   * least, and with a tolerance that goes with its square, so that the number of samples goes with its inverse. */
   void
   SetContourSpacing(double spacing);
 

@@ -5,43 +5,39 @@
 #define boneHierarchyLevelFilter_h
 
 #include "boneDensityHierarchy.h"
-
-#include <itkProcessObject.h>
+#include "boneMeshSource.h"
 
 namespace bone
 {
 /** \class HierarchyLevelFilter
  * \brief Hands one level of a hierarchy on as a mesh, so that stages that take a mesh can follow TetraCollapseFilter in
- * a lazy pipeline. Throws itk::ExceptionObject where the hierarchy has no such level. */
-class HierarchyLevelFilter : public itk::ProcessObject
+ * a lazy pipeline. Throws itk::ExceptionObject where the input "Hierarchy" has no such level. */
+class HierarchyLevelFilter : public MeshSource<DensityMesh<double>>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(HierarchyLevelFilter);
   using Self = HierarchyLevelFilter;
-  using Superclass = itk::ProcessObject;
+  using Superclass = MeshSource<DensityMesh<double>>;
   using Pointer = itk::SmartPointer<Self>;
+  using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(HierarchyLevelFilter, itk::ProcessObject);
+  itkTypeMacro(HierarchyLevelFilter, MeshSource);
 
-  using MeshType = DensityMesh<double>;
-  using HierarchyType = DensityHierarchy<MeshType>;
+  using HierarchyType = DensityHierarchy<DensityMesh<double>>;
 
-  using Superclass::SetInput;
+  using itk::ProcessObject::SetInput;
   void
-  SetInput(const HierarchyType * hierarchy);
-  MeshType *
-  GetOutput();
+  SetInput(const HierarchyType * hierarchy)
+  {
+    this->SetPrimaryInput(const_cast<HierarchyType *>(hierarchy));
+  }
 
   /** 0 is the finest level; default 0. */
   itkSetMacro(Level, std::size_t);
   itkGetConstMacro(Level, std::size_t);
 
-  using Superclass::MakeOutput;
-  itk::DataObject::Pointer
-  MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType index) override;
-
 protected:
-  HierarchyLevelFilter();
+  HierarchyLevelFilter() { this->SetPrimaryInputName("Hierarchy"); }
   ~HierarchyLevelFilter() override = default;
   /** A mesh's information does not follow from that of a hierarchy. */
   void

@@ -51,16 +51,6 @@ AdjustResolution(BuildPipeline &                                         pipelin
                  const Resolution &                                      start,
                  const ResolutionSearch &                                search,
                  const std::function<void(const Resolution &, IdType)> & tried);
-
-/** Resamples contours, whose own estimate is good to a quarter, so that their tiling (metric `span`) has a number of
- * tetrahedra within 5 %, in at most five tilings. `axes` takes the contours from `resample` and is left up to date with
- * the best. `tried` is told of each tiling. Returns the best number; throws itk::ExceptionObject where no contours can
- * be made or tiled. */
-IdType
-AdjustSamples(ContourResampleFilter &           resample,
-              MedialAxisFilter &                axes,
-              IdType                              tetrahedra,
-              const std::function<void(IdType)> & tried);
 } // namespace bone
 
 #endif

@@ -74,6 +74,37 @@ BuildPipeline::SetGeometry(const XRayGeometry * geometry)
 }
 
 void
+BuildPipeline::SetParameters(const BuildParameters & parameters)
+{
+  m_Snake->SetParameters(parameters.contours);
+  m_Slices->SetParameters(parameters.slices);
+  m_Resample->SetParameters(parameters.resample);
+  m_MedialAxis->SetParameters(parameters.medialAxis);
+  m_Tiling->SetParameters(parameters.tiling);
+  m_Quality->SetParameters(parameters.quality);
+  m_Fit->SetParameters(parameters.fit);
+  m_Collapse->SetParameters(parameters.collapse);
+  for (const auto & radiograph : m_Radiographs)
+  {
+    radiograph->SetParameters(parameters.radiograph);
+  }
+}
+
+void
+BuildPipeline::GetParameters(BuildParameters & parameters) const
+{
+  parameters.contours = m_Snake->GetParameters();
+  parameters.slices = m_Slices->GetParameters();
+  parameters.resample = m_Resample->GetParameters();
+  parameters.medialAxis = m_MedialAxis->GetParameters();
+  parameters.tiling = m_Tiling->GetParameters();
+  parameters.quality = m_Quality->GetParameters();
+  parameters.fit = m_Fit->GetParameters();
+  parameters.collapse = m_Collapse->GetParameters();
+  parameters.radiograph = m_Radiographs.front()->GetParameters();
+}
+
+void
 BuildPipeline::SetContourSpacing(double spacing)
 {
   m_Resample->SetMaximumSpacing(spacing);

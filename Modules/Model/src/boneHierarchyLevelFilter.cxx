@@ -5,30 +5,6 @@
 
 namespace bone
 {
-HierarchyLevelFilter::HierarchyLevelFilter()
-{
-  this->SetNumberOfRequiredInputs(1);
-  this->SetNthOutput(0, MeshType::New());
-}
-
-void
-HierarchyLevelFilter::SetInput(const HierarchyType * hierarchy)
-{
-  this->SetNthInput(0, const_cast<HierarchyType *>(hierarchy));
-}
-
-HierarchyLevelFilter::MeshType *
-HierarchyLevelFilter::GetOutput()
-{
-  return static_cast<MeshType *>(this->GetPrimaryOutput());
-}
-
-itk::DataObject::Pointer
-HierarchyLevelFilter::MakeOutput(itk::ProcessObject::DataObjectPointerArraySizeType)
-{
-  return MeshType::New().GetPointer();
-}
-
 void
 HierarchyLevelFilter::GenerateData()
 {

@@ -169,37 +169,4 @@ AdjustResolution(BuildPipeline &                                         pipelin
   }
   return resolution;
 }
-
-IdType
-AdjustSamples(ContourResampleFilter &           resample,
-              MedialAxisFilter &                axes,
-              IdType                              tetrahedra,
-              const std::function<void(IdType)> & tried)
-{
-  constexpr double tolerance = 0.05;
-  constexpr int    maximumTrials = 5;
-  auto             tiling = ContourTilingMeshSource<>::New();
-  tiling->SetInput(axes.GetOutput());
-  tiling->SetMetric(TilingMetricKind::Span);
-  double asked = static_cast<double>(tetrahedra), best = asked, bestError = std::numeric_limits<double>::max();
-  IdType bestCount = 0;
-  for (int trial = 0; trial < maximumTrials && bestError > tolerance; ++trial)
-  {
-    resample.SetTargetNumberOfTetrahedra(static_cast<std::size_t>(std::llround(asked)));
-    tiling->Update();
-    const IdType count = tiling->GetOutput()->GetNumberOfTetrahedra();
-    tried(count);
-    const double ratio = static_cast<double>(count) / static_cast<double>(tetrahedra);
-    if (std::abs(ratio - 1.0) < bestError)
-    {
-      bestError = std::abs(ratio - 1.0);
-      best = asked;
-      bestCount = count;
-    }
-    asked /= ratio;
-  }
-  resample.SetTargetNumberOfTetrahedra(static_cast<std::size_t>(std::llround(best)));
-  axes.Update();
-  return bestCount;
-}
 } // namespace bone

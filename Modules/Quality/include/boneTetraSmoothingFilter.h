@@ -24,7 +24,8 @@ namespace bone
  * without and with a test for inversion. Both shrink the body, and Laplacian may invert cells.
  *
  * Sequential in ascending order of points: the result does not depend on threads. Parameters: \ref
- * TetraSmoothingParameters. Errors, and what is done about inverted cells of the input: \ref MeshToMeshFilter. Laplacian takes those as they are. */
+ * TetraSmoothingParameters. Errors, and what is done about inverted cells of the input: \ref MeshToMeshFilter.
+ * Laplacian takes those as they are. */
 template <typename TMesh = DensityMesh<double>>
 class TetraSmoothingFilter : public MeshToMeshFilter<TMesh>
 {

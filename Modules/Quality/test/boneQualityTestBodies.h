@@ -32,7 +32,7 @@ RodContours(double radius, double inner = 0.0)
     for (const double r : { radius, inner })
     {
       Contour contour;
-      contour.region = r == radius ? Region::Cortical : Region::Spongy;
+      contour.region = r == radius ? Region::Cortical : Region::Trabecular;
       for (int i = 0; i < around; ++i)
       {
         contour.points.push_back(Vector3(r * std::cos(i * turn), r * std::sin(i * turn), z));

@@ -305,10 +305,10 @@ BodyLabels::BodyLabels(const PlaneGrid & grid)
 {}
 
 BodyLabels
-BodyLabels::FromDrawing(const PlaneField &             plane,
+BodyLabels::FromDrawing(const PlaneField &                plane,
                         const std::vector<SectionPiece> & pieces,
-                        const BodyRules &              rules,
-                        BodyTable &                    bodies)
+                        const BodyRules &                 rules,
+                        BodyTable &                       bodies)
 {
   std::vector<Polygon> loops;
   for (const SectionPiece & piece : pieces)

@@ -37,7 +37,7 @@ struct BodyRules
   double threshold{ SnakeContourParameters().boneThreshold };        ///< bone lies above
   double softTissue{ 50.0 };                                         ///< what surrounds it
   double minimumArea{ SnakeContourParameters().minimumContourArea }; ///< of a new piece
-  double closing{ 1.0 };                                             ///< gaps of the cortex up to twice as wide do not open it
+  double closing{ 1.0 }; ///< gaps of the cortex up to twice as wide do not open it
 };
 
 /** Where two bodies touch in a connected part of bone on a slice. */
@@ -85,10 +85,10 @@ public:
   /** On a slice where pieces were drawn: they are body 1, as far as the image confirms it: a part of bone mostly drawn
    * is taken whole, of others what lies inside. All other bone begins new bodies. */
   static BodyLabels
-  FromDrawing(const PlaneField &             plane,
+  FromDrawing(const PlaneField &                plane,
               const std::vector<SectionPiece> & pieces,
-              const BodyRules &              rules,
-              BodyTable &                    bodies);
+              const BodyRules &                 rules,
+              BodyTable &                       bodies);
 
   /** On the slice after the one of `before`. */
   static BodyLabels

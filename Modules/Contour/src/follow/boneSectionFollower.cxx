@@ -36,12 +36,12 @@ AddEvent(std::string & events, const std::string & event)
 class Following
 {
 public:
-  Following(const PlaneSource &              planes,
-            const Vector2 &                  pixel,
-            const FollowParameters &         parameters,
+  Following(const PlaneSource &          planes,
+            const Vector2 &              pixel,
+            const FollowParameters &     parameters,
             const std::vector<Section> & sections,
-            double                           spacing,
-            const Execution &                execution)
+            double                       spacing,
+            const Execution &            execution)
     : m_Planes(planes)
     , m_Pixel(pixel)
     , m_P(parameters)
@@ -318,15 +318,15 @@ private:
     AddEvent(m_Fine[at].event, text);
   }
 
-  const PlaneSource &              m_Planes;
-  Vector2                          m_Pixel;
-  const FollowParameters &         m_P;
+  const PlaneSource &          m_Planes;
+  Vector2                      m_Pixel;
+  const FollowParameters &     m_P;
   const std::vector<Section> & m_Sections;
-  std::vector<FinePlane>           m_Fine;
-  std::vector<BodyRuns>            m_Runs;
-  mutable BodyTable                m_Bodies;
-  const Execution &                m_Execution;
-  std::size_t                      m_Followed{ 0 };
+  std::vector<FinePlane>       m_Fine;
+  std::vector<BodyRuns>        m_Runs;
+  mutable BodyTable            m_Bodies;
+  const Execution &            m_Execution;
+  std::size_t                  m_Followed{ 0 };
 };
 } // namespace
 
@@ -340,7 +340,7 @@ std::vector<std::string>
 SectionFollower::Follow(std::vector<Section> & sections, double spacing, const Execution & execution) const
 {
   std::vector<Section> result = sections;
-  Following                following(m_Planes, m_Pixel, m_Parameters, sections, spacing, execution);
+  Following            following(m_Planes, m_Pixel, m_Parameters, sections, spacing, execution);
   following.Run();
   for (std::size_t k = 0; k < sections.size(); ++k)
   {

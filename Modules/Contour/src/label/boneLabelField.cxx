@@ -166,7 +166,7 @@ std::vector<float>
 SquaredDistances(const VoxelBox &                   box,
                  const std::vector<unsigned char> & inside,
                  bool                               feature,
-                 const Execution &                execution)
+                 const Execution &                  execution)
 {
   std::vector<float> values(inside.size());
   std::transform(inside.begin(), inside.end(), values.begin(), [feature](unsigned char flag) {
@@ -202,7 +202,7 @@ GaussianKernel(double sigma)
 LabelField::LabelField(const VoxelBox &                   box,
                        const std::vector<unsigned char> & inside,
                        double                             sigma,
-                       const Execution &                execution)
+                       const Execution &                  execution)
   : m_Box(box)
   , m_ToIndex(box.spacing.cwiseInverse().asDiagonal() * box.direction.inverse())
   , m_Inside(inside.size())
@@ -225,7 +225,8 @@ LabelField::LabelField(const VoxelBox &                   box,
     for (int axis = 0; axis < 3; ++axis)
     {
       const Lines lines(box.size, axis);
-      ForEachLine(lines, execution.Part(0.8 + axis / 15.0, 0.8 + (axis + 1) / 15.0), SmoothBody{ m_Values, lines, half });
+      ForEachLine(
+        lines, execution.Part(0.8 + axis / 15.0, 0.8 + (axis + 1) / 15.0), SmoothBody{ m_Values, lines, half });
     }
   }
   const auto least = static_cast<float>(0.15 * step);

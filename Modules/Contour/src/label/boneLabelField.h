@@ -22,7 +22,7 @@ public:
   LabelField(const VoxelBox &                   box,
              const std::vector<unsigned char> & inside,
              double                             sigma,
-             const Execution &                execution);
+             const Execution &                  execution);
 
   /** Value at a physical point. Beyond half a voxel outside the box it is negative. */
   double

@@ -21,9 +21,9 @@ struct CorticalProfile
 struct CorticalRules
 {
   double pixel{ 1.0 };
-  double endostealThreshold{ 0.0 };  ///< 0: half-way from the cortex's maximum to the level inside
-  double minimumContrast{ 100.0 };   ///< between the two, else the cortex is as thin as may be
-  double solidLevel{ 600.0 };        ///< a profile that stays above has no trabecular bone at its inner end
+  double endostealThreshold{ 0.0 }; ///< 0: half-way from the cortex's maximum to the level inside
+  double minimumContrast{ 100.0 };  ///< between the two, else the cortex is as thin as may be
+  double solidLevel{ 600.0 };       ///< a profile that stays above has no trabecular bone at its inner end
 };
 
 /** Where the cortex begins and ends on a profile, depths in mm below the periosteal contour. */

@@ -91,11 +91,11 @@ private:
   std::vector<Polygon>
   GrowApart(const std::vector<Polygon> & cores, const PlaneGrid & grid) const;
 
-  const PlaneSource &     m_Planes;
+  const PlaneSource &          m_Planes;
   const ExtractionParameters & m_Parameters;
-  double                  m_Pixel;
-  Vector2                 m_Spacing;
-  CorticalRules           m_Rules;
+  double                       m_Pixel;
+  Vector2                      m_Spacing;
+  CorticalRules                m_Rules;
 };
 
 SliceSamples
@@ -383,7 +383,8 @@ LayerFinder::FindEndosteal(const SectionPiece & piece, const SliceSamples & samp
       thickness = (1.0 - t) * loop[e].thickness + t * loop[(e + 1) % loop.size()].thickness;
     }
     field.values[n] = static_cast<float>(std::clamp(field.values[n] - thickness, -4.0, 4.0));
-    allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumLayerDistance, -9.0, 9.0));
+    allowed.values[n] =
+      static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumLayerDistance, -9.0, 9.0));
   }
   SmoothField(field, 0.6);
   return this->Regularise(field, allowed, piece.holes);
@@ -405,7 +406,8 @@ LayerFinder::FindMedullary(const Polygon & endosteal, const PlaneField & plane) 
       const double dark = (m_Parameters.medullaryThreshold - plane.Sample(field.grid.Node(i, j))) / 100.0;
       weight.values[n] = allowed.values[n] > 0.0F ? 1.0F : 0.0F;
       field.values[n] = weight.values[n] * static_cast<float>(std::clamp(dark, -1.0, 2.0));
-      allowed.values[n] = static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumLayerDistance, -9.0, 9.0));
+      allowed.values[n] =
+        static_cast<float>(std::clamp(allowed.values[n] - m_Parameters.minimumLayerDistance, -9.0, 9.0));
     }
   }
   SmoothField(field, 1.2);
@@ -490,11 +492,11 @@ WeightedMedian(std::vector<std::pair<double, double>> & values)
 
 // One pass of a filter of thickness over the surface within two standard deviations, median or mean.
 std::vector<SliceSamples>
-FilterThickness(const std::vector<Section> &  sections,
+FilterThickness(const std::vector<Section> &      sections,
                 const std::vector<SliceSamples> & samples,
                 double                            sigma,
                 bool                              median,
-                const Execution &               execution)
+                const Execution &                 execution)
 {
   const double               reach = 2.0 * sigma;
   std::vector<SampleBuckets> buckets;
@@ -556,11 +558,11 @@ SlicesIn(double length, const std::vector<Section> & sections)
 } // namespace
 
 std::vector<std::string>
-FindInnerLayers(std::vector<Section> & sections,
-                const PlaneSource &        planes,
-                const Vector2 &            pixel,
-                const ExtractionParameters &    parameters,
-                const Execution &        execution)
+FindInnerLayers(std::vector<Section> &       sections,
+                const PlaneSource &          planes,
+                const Vector2 &              pixel,
+                const ExtractionParameters & parameters,
+                const Execution &            execution)
 {
   if (sections.empty() || parameters.numberOfLayers < 2)
   {
@@ -571,8 +573,9 @@ FindInnerLayers(std::vector<Section> & sections,
   execution.Part(0.0, 0.3).For(sections.size(),
                                [&](std::size_t k) { samples[k] = finder.MeasureThickness(sections[k]); });
   const double blur = BlurOf(samples, pixel.maxCoeff());
-  execution.Silent().For(sections.size(),
-           [&](std::size_t k) { SetThickness(samples[k], blur, parameters.minimumLayerDistance, pixel.maxCoeff()); });
+  execution.Silent().For(sections.size(), [&](std::size_t k) {
+    SetThickness(samples[k], blur, parameters.minimumLayerDistance, pixel.maxCoeff());
+  });
   samples = FilterThickness(sections, samples, parameters.thicknessSmoothing, true, execution.Part(0.3, 0.4));
   samples = FilterThickness(sections, samples, 0.7 * parameters.thicknessSmoothing, false, execution.Part(0.4, 0.5));
 

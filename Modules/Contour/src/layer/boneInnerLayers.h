@@ -16,14 +16,15 @@ namespace bone
  * across slices (median, then Gaussian), and the endosteal contours are where the depth below the periosteal contour
  * equals the thickness of the nearest point: they cannot come nearer than the minimum distance. What they bound is
  * closed and opened with a disk; where opposite cortices meet it falls into several parts, each with a contour. Around
- * a hole it is cut at its narrowest place. Contours stay the minimum distance apart and are kept only in chains of slices
- * that last. Medullary boundaries are levels of the smoothed CT inside, treated alike. Returns lines for the report. */
+ * a hole it is cut at its narrowest place. Contours stay the minimum distance apart and are kept only in chains of
+ * slices that last. Medullary boundaries are levels of the smoothed CT inside, treated alike. Returns lines for the
+ * report. */
 std::vector<std::string>
-FindInnerLayers(std::vector<Section> & sections,
-                const PlaneSource &        planes,
-                const Vector2 &            pixel,
+FindInnerLayers(std::vector<Section> &       sections,
+                const PlaneSource &          planes,
+                const Vector2 &              pixel,
                 const ExtractionParameters & parameters,
-                const Execution &        execution);
+                const Execution &            execution);
 } // namespace bone
 
 #endif

@@ -158,7 +158,10 @@ FitChords(const std::vector<Vector2> & curve, const std::vector<double> & at)
 class SliceSampler
 {
 public:
-  SliceSampler(std::vector<LoopPlan> plans, const ContourResampleParameters & parameters, double spacingScale, SamplingReport & report)
+  SliceSampler(std::vector<LoopPlan>             plans,
+               const ContourResampleParameters & parameters,
+               double                            spacingScale,
+               SamplingReport &                  report)
     : m_Parameters(parameters)
     , m_SpacingScale(spacingScale)
     , m_Report(report)
@@ -204,8 +207,9 @@ public:
         again = again || dirty[c] != 0;
       }
     }
-    m_Report.near += static_cast<int>(std::count_if(
-      m_Pairs.begin(), m_Pairs.end(), [this](const Pair & pair) { return pair.gap < m_Parameters.minimumLayerDistance; }));
+    m_Report.near += static_cast<int>(std::count_if(m_Pairs.begin(), m_Pairs.end(), [this](const Pair & pair) {
+      return pair.gap < m_Parameters.minimumLayerDistance;
+    }));
     std::vector<Polygon> result;
     for (LoopPlan & plan : m_Plans)
     {
@@ -467,21 +471,21 @@ private:
     return true;
   }
 
-  const ContourResampleParameters &    m_Parameters;
-  double m_SpacingScale;
-  SamplingReport &              m_Report;
-  std::vector<LoopPlan>         m_Plans;
-  std::vector<NearestOnPolygon> m_ToGiven; // in the order of the plans
-  std::vector<Pair>             m_Pairs;
+  const ContourResampleParameters & m_Parameters;
+  double                            m_SpacingScale;
+  SamplingReport &                  m_Report;
+  std::vector<LoopPlan>             m_Plans;
+  std::vector<NearestOnPolygon>     m_ToGiven; // in the order of the plans
+  std::vector<Pair>                 m_Pairs;
 };
 } // namespace
 
 ContourSlice
-SampleSlice(const ContourSlice &       slice,
-            const ContourStack &       frame,
+SampleSlice(const ContourSlice &              slice,
+            const ContourStack &              frame,
             const ContourResampleParameters & parameters,
-            double spacingScale,
-            SamplingReport &           report)
+            double                            spacingScale,
+            SamplingReport &                  report)
 {
   ContourSlice          result;
   std::vector<LoopPlan> plans;

@@ -16,14 +16,14 @@ namespace bone
  * square to the contour given: chords pass it on both sides, and areas are kept. Where chords bring a
  * contour nearer to the one around it (or to a hole beside it) than the minimum distance, the inner one is moved away.
  * What still conflicts is fitted and sampled more finely, then kept as given. The result is simple and
- * disjoint (decided exactly). Order, ids, layers and orientation are kept. `spacingScale` multiplies every spacing, limits
- * too. */
+ * disjoint (decided exactly). Order, ids, layers and orientation are kept. `spacingScale` multiplies every spacing,
+ * limits too. */
 ContourSlice
-SampleSlice(const ContourSlice &       slice,
-            const ContourStack &       frame,
+SampleSlice(const ContourSlice &              slice,
+            const ContourStack &              frame,
             const ContourResampleParameters & parameters,
-            double                     spacingScale,
-            SamplingReport &           report);
+            double                            spacingScale,
+            SamplingReport &                  report);
 
 /** Points of all closed contours. */
 std::size_t

@@ -241,8 +241,8 @@ GroupPieces(std::vector<Polygon> contours, double minimumArea, int & dropped)
     areas.push_back(SignedArea(contour));
   }
   std::vector<SectionPiece> pieces;
-  std::vector<double>    outerAreas;
-  std::vector<int>       pieceOf(contours.size(), -1);
+  std::vector<double>       outerAreas;
+  std::vector<int>          pieceOf(contours.size(), -1);
   for (std::size_t c = 0; c < contours.size(); ++c)
   {
     if (areas[c] >= minimumArea)
@@ -336,8 +336,8 @@ DropShortLived(std::vector<Section> & sections, int minimumSlices, double minimu
 int
 DropShortLayers(std::vector<Section> & sections,
                 std::vector<Polygon> SectionPiece::*inner,
-                double                           smallestArea,
-                int                              minimumSlices)
+                double                              smallestArea,
+                int                                 minimumSlices)
 {
   int               occupied = 0;
   std::vector<Item> items;

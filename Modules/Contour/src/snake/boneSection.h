@@ -23,7 +23,7 @@ struct SectionPiece
 /** \brief The pieces of bone on one slice, in plane coordinates (mm). */
 struct Section
 {
-  double                 height{ 0.0 }; ///< along the stack's normal, mm
+  double                    height{ 0.0 }; ///< along the stack's normal, mm
   std::vector<SectionPiece> pieces;
 };
 
@@ -49,8 +49,8 @@ DropShortLived(std::vector<Section> & sections, int minimumSlices, double minimu
 int
 DropShortLayers(std::vector<Section> & sections,
                 std::vector<Polygon> SectionPiece::*inner,
-                double                           smallestArea,
-                int                              minimumSlices);
+                double                              smallestArea,
+                int                                 minimumSlices);
 
 /** The sections as contours: layers 0, 1, 2 with regions Cortical, Trabecular, Medullary; holes have layer 0 and region
  * Outside. Uses the stack's frame. */

@@ -290,16 +290,16 @@ BrightestWithin(const std::vector<Section> & sections, const PlaneSource & plane
 }
 
 void
-RefineSections(std::vector<Section> &   sections,
+RefineSections(std::vector<Section> &       sections,
                const PlaneSource &          planes,
                const Vector2 &              pixel,
                const ExtractionParameters & parameters,
-               const Execution &          execution,
+               const Execution &            execution,
                ExtractionReport &           report)
 {
   report.slices.resize(sections.size());
   execution.For(sections.size(), [&](std::size_t k) {
-    Section & section = sections[k];
+    Section &     section = sections[k];
     SliceReport & line = report.slices[k];
     line.height = section.height;
     if (section.pieces.empty())
@@ -309,7 +309,7 @@ RefineSections(std::vector<Section> &   sections,
     const std::vector<Polygon> start = LoopsOf(section);
     const PlaneField           plane = PlaneAround(start, section.height, 8.0 * pixel.maxCoeff(), planes);
     const BoneEdges            edges(plane, {}, Smoothing(parameters, pixel), parameters.minimumEdgeSlope);
-    Section                refined = section;
+    Section                    refined = section;
     // A hole is clockwise: its outward normal points into the hole, away from bone, as the outer contour's does. What
     // finds few edges, or is so small that it shrinks, stays as it is.
     const auto refine = [&](Polygon & loop) {
@@ -335,11 +335,11 @@ RefineSections(std::vector<Section> &   sections,
 }
 
 void
-PropagateSections(std::vector<Section> &   sections,
+PropagateSections(std::vector<Section> &       sections,
                   const PlaneSource &          planes,
                   const Vector2 &              pixel,
                   const ExtractionParameters & parameters,
-                  const Execution &          execution,
+                  const Execution &            execution,
                   ExtractionReport &           report)
 {
   FollowParameters following;
@@ -350,7 +350,7 @@ PropagateSections(std::vector<Section> &   sections,
   {
     drawn.push_back(!section.pieces.empty());
   }
-  const SectionFollower             follower(planes, pixel, following);
+  const SectionFollower          follower(planes, pixel, following);
   const std::vector<std::string> events = follower.Follow(sections, parameters.followStep, execution.Part(0.0, 0.7));
   const SliceSnakes              snakes(planes, pixel, parameters);
   report.slices.resize(sections.size());
@@ -364,11 +364,11 @@ PropagateSections(std::vector<Section> &   sections,
 }
 
 void
-FinishSections(std::vector<Section> &   sections,
+FinishSections(std::vector<Section> &       sections,
                const PlaneSource &          planes,
                const Vector2 &              pixel,
                const ExtractionParameters & parameters,
-               const Execution &          execution,
+               const Execution &            execution,
                ExtractionReport &           report)
 {
   std::vector<std::string> lines;

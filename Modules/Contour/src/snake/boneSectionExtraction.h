@@ -27,35 +27,36 @@ BrightestWithin(const std::vector<Section> & sections, const PlaneSource & plane
 /** Moves the periosteal contours of sections, as they come from a label, to the CT's edges within
  * `parameters.refineDistance`. A slice where that makes contours cross keeps those it had, and its report says so. */
 void
-RefineSections(std::vector<Section> &   sections,
+RefineSections(std::vector<Section> &       sections,
                const PlaneSource &          planes,
                const Vector2 &              pixel,
                const ExtractionParameters & parameters,
-               const Execution &          execution,
+               const Execution &            execution,
                ExtractionReport &           report);
 
 /** \brief Follows contours from slice to slice (paper 2.1).
  *
- * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn. \ref SectionFollower
- * finds which part of the other slices is that bone; snakes then draw its outlines to the edges: gradient vector flow
- * first where a person has drawn, within two pixels elsewhere. Contours that would cross are joined and parted by their
- * union's outline. The report tells where pieces join, touch other bones or end, and of sudden changes and gaps.
+ * `sections` are the slices to be filled, in order; those with pieces are where a person has drawn. \ref
+ * SectionFollower finds which part of the other slices is that bone; snakes then draw its outlines to the edges:
+ * gradient vector flow first where a person has drawn, within two pixels elsewhere. Contours that would cross are
+ * joined and parted by their union's outline. The report tells where pieces join, touch other bones or end, and of
+ * sudden changes and gaps.
  */
 void
-PropagateSections(std::vector<Section> &   sections,
+PropagateSections(std::vector<Section> &       sections,
                   const PlaneSource &          planes,
                   const Vector2 &              pixel,
                   const ExtractionParameters & parameters,
-                  const Execution &          execution,
+                  const Execution &            execution,
                   ExtractionReport &           report);
 
 /** Drops what is short-lived, finds the inner layers and removes empty slices at both ends, from the report too. */
 void
-FinishSections(std::vector<Section> &   sections,
+FinishSections(std::vector<Section> &       sections,
                const PlaneSource &          planes,
                const Vector2 &              pixel,
                const ExtractionParameters & parameters,
-               const Execution &          execution,
+               const Execution &            execution,
                ExtractionReport &           report);
 } // namespace bone
 

@@ -160,12 +160,12 @@ FollowFlow(Polygon & contour, const BoneEdges & edges, const SnakeContourParamet
 
 // Draws points to their edges; bounded: on the normals of where they started, within reach.
 void
-SettleOnEdges(Polygon &               contour,
-              const BoneEdges &       edges,
-              double                  reach,
-              bool                    bounded,
+SettleOnEdges(Polygon &                      contour,
+              const BoneEdges &              edges,
+              double                         reach,
+              bool                           bounded,
               const SnakeContourParameters & parameters,
-              SnakeResult &           result)
+              SnakeResult &                  result)
 {
   const std::size_t    n = contour.size();
   const Polygon        anchor = contour;

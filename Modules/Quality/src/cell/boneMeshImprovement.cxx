@@ -31,7 +31,8 @@ constexpr int    SliverPasses = 2;
 constexpr int FitsToFlip = 2;
 /** Fits from this many before the last may be stiffer than the first. */
 constexpr int FirstStiffer = 2;
-/** Stiffness rises from one fit to the next by this power of the boundary's dihedral deviation over the wanted one ... */
+/** Stiffness rises from one fit to the next by this power of the boundary's dihedral deviation over the wanted one ...
+ */
 constexpr double StiffnessPower = 4.0;
 /** ... but by no less than this share, twice that, and so on, and by no more than this factor ... */
 constexpr double LeastStiffening = 0.1;
@@ -70,8 +71,8 @@ public:
     m_Execution.Report(0.1);
     for (int round = 0; round < m_Parameters.rounds; ++round)
     {
-      const Execution part = m_Execution.Part(0.1 + 0.6 * round / m_Parameters.rounds,
-                                              0.1 + 0.6 * (round + 1) / m_Parameters.rounds);
+      const Execution part =
+        m_Execution.Part(0.1 + 0.6 * round / m_Parameters.rounds, 0.1 + 0.6 * (round + 1) / m_Parameters.rounds);
       Smooth(SmoothingsInRound, SurfaceMotion::None);
       part.Report(0.1);
       if (round + 1 < m_Parameters.rounds && m_Parameters.gradation > 0)
@@ -242,7 +243,9 @@ private:
   Excess() const
   {
     const bool known = m_Parameters.shape && m_Parameters.stiffness > 0 && m_FirstDeviation > 0;
-    return known ? MeanBoundaryDeviation(m_Complex, m_Parameters.slices) / (m_Parameters.deviationShare * m_FirstDeviation) : 0.0;
+    return known
+             ? MeanBoundaryDeviation(m_Complex, m_Parameters.slices) / (m_Parameters.deviationShare * m_FirstDeviation)
+             : 0.0;
   }
 
   /** Collapses and flips of surface edges by contours and dihedral deviation. */
@@ -295,7 +298,7 @@ private:
   const ImprovementParameters & m_Parameters;
   const Execution &             m_Execution;
   double                        m_FirstDeviation; ///< mean of the boundary as it was, rad
-  SurfaceTarget                 m_First;     ///< the surfaces as they were
+  SurfaceTarget                 m_First;          ///< the surfaces as they were
   SurfaceBound                  m_Bound;
   PointMover                    m_Mover;
   SurfaceTarget                 m_Target;

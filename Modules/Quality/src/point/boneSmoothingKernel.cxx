@@ -74,14 +74,14 @@ PlainIteration(TetraComplex & complex, PointMover & mover, bool smart, Smoothing
 } // namespace
 
 void
-EnhancedIteration(TetraComplex &              complex,
-                  PointMover &                mover,
-                  const SurfaceTarget &       target,
+EnhancedIteration(TetraComplex &                   complex,
+                  PointMover &                     mover,
+                  const SurfaceTarget &            target,
                   const TetraSmoothingParameters & parameters,
-                  SurfaceMotion motion,
-                  SmoothingReport &           report)
+                  SurfaceMotion                    motion,
+                  SmoothingReport &                report)
 {
-  const double        cosineFloor = std::cos(parameters.angleFloor);
+  const double cosineFloor = std::cos(parameters.angleFloor);
   for (IdType p = 0; p < static_cast<IdType>(complex.Points().size()); ++p)
   {
     if (complex.Star(p).empty() || complex.Dimension(p) == 0 ||

@@ -18,8 +18,8 @@ struct ContourFlipParameters
 /** \brief Flips edges of boundary and interfaces where the contours lie closer to the other two triangles, or where the
  * dihedral deviation falls.
  *
- * Four points of a curved surface make two pairs of triangles, one along a hollow and one across it; angles alone do not
- * tell which is right (data-dependent triangulation: N. Dyn, D. Levin, S. Rippa, IMA J. Numer. Anal. 10, 1990).
+ * Four points of a curved surface make two pairs of triangles, one along a hollow and one across it; angles alone do
+ * not tell which is right (data-dependent triangulation: N. Dyn, D. Levin, S. Rippa, IMA J. Numer. Anal. 10, 1990).
  * What falls is the \ref SurfaceEnergy; it must fall by `leastGain` times the areas that the contours' points of the
  * two triangles stand for. The mover's bound holds. Returns the number of flips. */
 std::size_t

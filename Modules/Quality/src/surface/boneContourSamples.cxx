@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneContourSamples.h"
 
-
 #include <optional>
 
 namespace bone

@@ -166,7 +166,10 @@ private:
 } // namespace
 
 std::size_t
-SideKeeper::Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters, const Execution & execution) const
+SideKeeper::Restore(TetraComplex &     complex,
+                    PointMover &       mover,
+                    const Parameters & parameters,
+                    const Execution &  execution) const
 {
   const double reach = parameters.reach * m_Outline.spacing, margin = parameters.margin * m_Outline.spacing;
   NearCentres  near(complex, m_Outline, Surroundings * reach, execution);

@@ -26,9 +26,10 @@ MeanBoundaryDeviation(const TetraComplex & complex, const std::vector<int> & sli
  * \brief Treats each edge between two triangles of a surface as a hinge that resists bending.
  *
  * The energy of a hinge (mm^4) is stiffness A^2 d^2 / (1 + 8 d / m). A is the mean area of a surface point, d the
- * dihedral deviation of the edge (rad) and m the mean dihedral deviation. The energy is quadratic for small d and linear
- * for large d, so that ridges are kept. It is to be compared with squared distances times areas. Edges where surfaces
- * meet and edges of flat cuts have no hinge. A and m are taken from the mesh when the object is constructed. */
+ * dihedral deviation of the edge (rad) and m the mean dihedral deviation. The energy is quadratic for small d and
+ * linear for large d, so that ridges are kept. It is to be compared with squared distances times areas. Edges where
+ * surfaces meet and edges of flat cuts have no hinge. A and m are taken from the mesh when the object is constructed.
+ */
 class SurfaceBending
 {
 public:
@@ -51,10 +52,10 @@ public:
   /** \brief The positions of the points that minimise the energy of springs and hinges.
    *
    * The energy is the sum of weight |place - target|^2 over the springs and of the hinges' energies. To first order the
-   * dihedral deviation is a linear function of the four points of an edge (M. Bergou, M. Wardetzky, D. Harmon, D. Zorin,
-   * E. Grinspun, "A quadratic bending model for inextensible surfaces", Symposium on Geometry Processing 2006), so that
-   * one linear system is solved, with the softening of the present deviations. Springs alone need not determine every
-   * point, so a tenth of their weights holds points where they are. Points that are not free, and points without
+   * dihedral deviation is a linear function of the four points of an edge (M. Bergou, M. Wardetzky, D. Harmon, D.
+   * Zorin, E. Grinspun, "A quadratic bending model for inextensible surfaces", Symposium on Geometry Processing 2006),
+   * so that one linear system is solved, with the softening of the present deviations. Springs alone need not determine
+   * every point, so a tenth of their weights holds points where they are. Points that are not free, and points without
    * springs, stay. */
   std::vector<Vector3>
   Solve(const std::vector<Vector3> & points,
@@ -68,7 +69,7 @@ private:
   Softening(double deviation) const;
 
   std::vector<Hinge> m_Hinges;
-  double             m_Factor{ 0.0 };   ///< stiffness A^2
+  double             m_Factor{ 0.0 };        ///< stiffness A^2
   double             m_SoftDeviation{ 1.0 }; ///< rad
 };
 } // namespace bone

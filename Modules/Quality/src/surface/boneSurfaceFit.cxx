@@ -88,7 +88,10 @@ MeanEdge(const std::vector<Face> & faces, const std::vector<Vector3> & x)
 
 /** Springs from triangles to the shape between slices, or where there is none to the first surfaces. */
 Springs
-SpringsOfTriangles(const TetraComplex & complex, const std::vector<Face> & faces, const SurfaceFitTarget & target, const Execution & execution)
+SpringsOfTriangles(const TetraComplex &      complex,
+                   const std::vector<Face> & faces,
+                   const SurfaceFitTarget &  target,
+                   const Execution &         execution)
 {
   const auto & x = complex.Points();
   const auto & samples = target.shape ? OneSample : ThreeSamples;
@@ -150,7 +153,11 @@ AddContours(const TetraComplex & complex, const ContourSamples & contours, Sprin
  * \param normal  of the slices of contours: most is asked of the faces about what lies between them; null: there are
  * none. */
 void
-AddOutline(const TetraComplex & complex, const LabelOutline & outline, const Vector3 * normal, const Execution & execution, Springs & springs)
+AddOutline(const TetraComplex & complex,
+           const LabelOutline & outline,
+           const Vector3 *      normal,
+           const Execution &    execution,
+           Springs &            springs)
 {
   constexpr double                    farthest = 1.5, leastSlope = 0.3;
   const auto &                        x = complex.Points();

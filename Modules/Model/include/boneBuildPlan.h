@@ -1,0 +1,56 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneBuildPlan_h
+#define boneBuildPlan_h
+
+#include "boneResolution.h"
+
+namespace bone
+{
+/** What a build is made from: CT, and where the bone is. */
+struct BuildInput
+{
+  CTImage::Pointer      ct;
+  LabelImage::Pointer   labels;         ///< null without a label map
+  LabelImage::Pointer   mask;           ///< 1 in the bone; null without a label map
+  ContourStack::Pointer contours;       ///< initial ones; may be null
+  double                surface{ 0.0 }; ///< of the label, mm^2; 0 without a label map
+};
+
+/** CT and label map cut down to the bone and the plan's margin; the CT as it is where `labels` is null. Throws
+ * itk::ExceptionObject where the two have not the same grid, or the label does not occur. */
+BuildInput
+CropToBone(const CTImage *             ct,
+           const LabelImage *          labels,
+           const ContourStack *        contours,
+           const BuildPlanParameters & plan);
+
+/** How far the quality stage may move surfaces, mm: half a pixel of the slices, but no more than keeps the overlap with
+ * a label map of large voxels. */
+double
+FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan);
+
+/** Numbers of tetrahedra of the coarser levels; what is below 1 is a share of the first. Throws std::invalid_argument
+ * where they do not descend from `finest`. */
+std::vector<IdType>
+CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest);
+
+/** \brief Sets input and parameters on the pipeline and finds the resolution.
+ *
+ * Slice step and contour spacing are those of the plan where it has them, else such that the mesh has about the number
+ * of tetrahedra asked for after the quality stage, which is then up to date (\ref AdjustResolution). `tried` is told of
+ * each tiling. */
+Resolution
+PlanBuild(const BuildInput &                                      input,
+          const BuildParameters &                                 parameters,
+          BuildPipeline &                                         pipeline,
+          const std::function<void(const Resolution &, IdType)> & tried);
+
+/** Sets the numbers of tetrahedra of the coarser levels on the collapse, as the plan says, and brings the pipeline up
+ * to date. */
+void
+FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline);
+} // namespace bone
+
+#endif

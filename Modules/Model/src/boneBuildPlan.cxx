@@ -1,0 +1,114 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneBuildPlan.h"
+
+#include "boneLabelCrop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace bone
+{
+BuildInput
+CropToBone(const CTImage *             ct,
+           const LabelImage *          labels,
+           const ContourStack *        contours,
+           const BuildPlanParameters & plan)
+{
+  BuildInput input;
+  input.ct = const_cast<CTImage *>(ct);
+  input.contours = const_cast<ContourStack *>(contours);
+  if (labels == nullptr)
+  {
+    return input;
+  }
+  VerifySameGrid(ct, labels);
+  const BoneExtent          extent = MeasureLabel(labels, plan.label);
+  const CTImage::RegionType region = GrowRegion(ct, extent.region, plan.cropMargin);
+  input.ct = Crop(ct, region);
+  input.labels = Crop(labels, region);
+  input.mask = MaskOfLabel(input.labels, plan.label);
+  input.surface = extent.surface;
+  return input;
+}
+
+double
+FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan)
+{
+  double bound = plan.largestDistanceBound;
+  for (unsigned int d = 0; d < 3; ++d)
+  {
+    bound = d == plan.axis ? bound : std::min(bound, 0.5 * ct.GetSpacing()[d]);
+  }
+  return bound;
+}
+
+std::vector<IdType>
+CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest)
+{
+  std::vector<IdType> counts;
+  for (const double level : levels)
+  {
+    counts.push_back(static_cast<IdType>(std::lround(level < 1.0 ? level * static_cast<double>(finest) : level)));
+    if (counts.back() >= (counts.size() == 1 ? finest : counts[counts.size() - 2]))
+    {
+      throw std::invalid_argument("levels must descend and be below the first level's " + std::to_string(finest) +
+                                  " tetrahedra");
+    }
+  }
+  return counts;
+}
+
+Resolution
+PlanBuild(const BuildInput &                                      input,
+          const BuildParameters &                                 parameters,
+          BuildPipeline &                                         pipeline,
+          const std::function<void(const Resolution &, IdType)> & tried)
+{
+  const BuildPlanParameters & plan = parameters.plan;
+  BuildParameters             stages = parameters;
+  stages.contours.label = stages.quality.label = plan.label;
+  stages.contours.axis = plan.axis;
+  stages.quality.distanceBound = FindDistanceBound(*input.ct, plan);
+  pipeline.SetParameters(stages);
+  pipeline.SetImage(input.ct);
+  pipeline.SetLabelImage(input.labels);
+  pipeline.SetInitialContours(input.contours);
+  double surface = input.surface;
+  if (input.labels.IsNull())
+  {
+    // How large the bone is shows once its contours were followed.
+    pipeline.GetSnake()->SetSliceStep(plan.probeStep);
+    pipeline.GetSnake()->Update();
+    surface = EstimateSurface(*pipeline.GetSnake()->GetOutput());
+  }
+  const double sliceSpacing = input.ct->GetSpacing()[plan.axis];
+  Resolution   resolution = EstimateResolution(surface, sliceSpacing, plan.tetrahedra);
+  if (plan.sliceStep > 0.0)
+  {
+    resolution.contourSpacing *= resolution.sliceStep / plan.sliceStep;
+    resolution.sliceStep = plan.sliceStep;
+  }
+  const ResolutionSearch search{ plan.tetrahedra, sliceSpacing, plan.sliceStep > 0.0, !plan.regularSlices };
+  if (!(plan.contourSpacing > 0.0))
+  {
+    return AdjustResolution(pipeline, resolution, search, tried);
+  }
+  resolution.contourSpacing = plan.contourSpacing;
+  SetResolution(pipeline, resolution, search);
+  pipeline.GetQuality()->Update();
+  return resolution;
+}
+
+void
+FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline)
+{
+  pipeline.SetGeometry(geometry);
+  pipeline.GetQuality()->Update();
+  pipeline.GetCollapse()->SetLevels(
+    CountTetrahedraOfLevels(plan.levels, pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra()));
+  pipeline.Update();
+}
+} // namespace bone
