@@ -6,8 +6,7 @@
 //
 // BuildPipeline chains the stages; a changed parameter re-runs its stage and those after it.
 
-#include "boneBuildEvaluation.h"
-#include "boneBuildPipeline.h"
+#include "boneBuildPlan.h"
 #include "boneHierarchyIO.h"
 #include "boneStageClock.h"
 

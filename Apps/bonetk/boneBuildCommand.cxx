@@ -139,7 +139,7 @@ Run(const Options & options, Session & session)
   report.resolution = Plan(input, options.parameters, pipeline, session);
   try
   {
-    FinishBuild(plan, FrontView(pipeline.GetTiling()->GetOutput()), pipeline);
+    FinishBuild(plan, nullptr, pipeline);
   }
   catch (const std::invalid_argument & error)
   {

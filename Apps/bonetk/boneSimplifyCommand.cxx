@@ -19,21 +19,15 @@ struct Options
 {
   std::string             mesh;
   TetraCollapseParameters parameters;
-  BuildPlanParameters     plan;            ///< its levels
+  BuildPlanParameters     plan;            ///< its levels, where nothing else says how far to go
   bool                    levels{ false }; ///< given
   std::string             prefix;
 };
 
-/** Throws a UsageError where no level is asked for, or one is finer than the one before. */
+/** Throws a UsageError where a level is finer than the one before. */
 void
-Verify(const Options & options)
+Verify(const TetraCollapseParameters & parameters)
 {
-  const TetraCollapseParameters & parameters = options.parameters;
-  if (!options.levels && parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
-      parameters.maximumSurfaceDistances.empty())
-  {
-    throw UsageError("--tetrahedra, --levels, --max-density-error or --max-surface-distance is required");
-  }
   if (!std::is_sorted(parameters.levels.rbegin(), parameters.levels.rend()))
   {
     throw UsageError("--tetrahedra must not ascend: each level is coarser than the one before");
@@ -51,10 +45,11 @@ Verify(const Options & options)
 void
 Run(const Options & options, Session & session)
 {
-  Verify(options);
   TetraCollapseParameters parameters = options.parameters;
+  Verify(parameters);
   const auto              mesh = ReadDensityMesh(options.mesh);
-  if (options.levels)
+  if (options.levels || (parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
+                         parameters.maximumSurfaceDistances.empty()))
   {
     try
     {

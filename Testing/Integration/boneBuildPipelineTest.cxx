@@ -4,6 +4,7 @@
 #include "boneBuildPipeline.h"
 
 #include "boneBuildEvaluation.h"
+#include "boneBuildPlan.h"
 #include "boneFemurPhantom.h"
 #include "boneMeshImageMetrics.h"
 #include "bonePhantomImageSource.h"

@@ -29,11 +29,6 @@ struct Evaluation
  * radiograph of the CT counts the mask's voxels only. */
 Evaluation
 Evaluate(BuildPipeline & pipeline, const Evidence & evidence);
-
-/** A view from the front that holds the model and its margin: 400 pixels on the longer side, source at 1000 mm,
- * detector 200 mm behind the bone's centre. */
-XRayGeometry::Pointer
-FrontView(const BuildPipeline::MeshType * mesh);
 } // namespace bone
 
 #endif

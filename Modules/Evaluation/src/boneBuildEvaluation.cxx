@@ -124,25 +124,4 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   evaluation.radiographs = DrawComparison(panel, "CT", radiographs, { 0.0, 0.9 * largest }, 0.1 * largest);
   return evaluation;
 }
-
-XRayGeometry::Pointer
-FrontView(const MeshType * mesh)
-{
-  Vector3 lower = Vector3::Constant(std::numeric_limits<double>::max());
-  Vector3 upper = -lower;
-  for (const Vector3 & p : mesh->GetArrays().points)
-  {
-    lower = lower.cwiseMin(p);
-    upper = upper.cwiseMax(p);
-  }
-  auto geometry = XRayGeometry::New();
-  geometry->SetView(XRayGeometry::Framing(lower - Vector3::Constant(5.0),
-                                          upper + Vector3::Constant(5.0),
-                                          Vector3::UnitY(),
-                                          Vector3::UnitZ(),
-                                          1000.0,
-                                          1200.0,
-                                          400));
-  return geometry;
-}
 } // namespace bone

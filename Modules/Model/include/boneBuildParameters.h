@@ -44,7 +44,7 @@ DefaultLevels()
     "The images are cut down to the label and this margin") \
   value(double, probeStep, ProbeStep, 5.0, ParameterRange::Positive(), "mm", "", \
     "Slice step of the contours that tell how large a bone is that has no label map") \
-  value(double, largestDistanceBound, LargestDistanceBound, 0.3, ParameterRange::NotNegative(), "mm", "", \
+  value(double, largestDistanceBound, LargestDistanceBound, MeshQualityParameters().distanceBound, ParameterRange::NotNegative(), "mm", "", \
     "How far the quality stage may move surfaces, half a pixel of the slices at most")
 // clang-format on
 

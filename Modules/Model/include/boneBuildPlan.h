@@ -39,16 +39,21 @@ CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest);
 /** \brief Sets input and parameters on the pipeline and finds the resolution.
  *
  * Slice step and contour spacing are those of the plan where it has them, else such that the mesh has about the number
- * of tetrahedra asked for after the quality stage, which is then up to date (\ref AdjustResolution). `tried` is told of
- * each tiling. */
+ * of tetrahedra asked for after the quality stage, which is then up to date (\ref AdjustResolution). `tried`, where it is
+ * not empty, is told of each tiling. */
 Resolution
 PlanBuild(const BuildInput &                                      input,
           const BuildParameters &                                 parameters,
           BuildPipeline &                                         pipeline,
-          const std::function<void(const Resolution &, IdType)> & tried);
+          const std::function<void(const Resolution &, IdType)> & tried = {});
+
+/** A view from the front that holds the model and its margin: 400 pixels on the longer side, source at 1000 mm,
+ * detector 200 mm behind the bone's centre. */
+XRayGeometry::Pointer
+FrontView(const BuildPipeline::MeshType * mesh);
 
 /** Sets the numbers of tetrahedra of the coarser levels on the collapse, as the plan says, and brings the pipeline up
- * to date. */
+ * to date. A null geometry is the front view of the tiling. */
 void
 FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline);
 } // namespace bone

@@ -45,7 +45,7 @@ SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const Res
  * tetrahedra within 8 % after the quality stage, which takes some away: in at most three rounds of at most six tilings.
  * Leaves the best ones set and the quality stage up to date. Far from the number both are changed, near it the spacing
  * alone, which leaves the contours as they are. A resolution at which the tiling fails is passed over; the last failure
- * is thrown where all fail. `tried` is told of each tiling. */
+ * is thrown where all fail. `tried`, where it is not empty, is told of each tiling. */
 Resolution
 AdjustResolution(BuildPipeline &                                         pipeline,
                  const Resolution &                                      start,

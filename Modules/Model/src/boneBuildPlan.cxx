@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace bone
@@ -102,10 +103,32 @@ PlanBuild(const BuildInput &                                      input,
   return resolution;
 }
 
+XRayGeometry::Pointer
+FrontView(const BuildPipeline::MeshType * mesh)
+{
+  Vector3 lower = Vector3::Constant(std::numeric_limits<double>::max());
+  Vector3 upper = -lower;
+  for (const Vector3 & p : mesh->GetArrays().points)
+  {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  auto geometry = XRayGeometry::New();
+  geometry->SetView(XRayGeometry::Framing(lower - Vector3::Constant(5.0),
+                                          upper + Vector3::Constant(5.0),
+                                          Vector3::UnitY(),
+                                          Vector3::UnitZ(),
+                                          1000.0,
+                                          1200.0,
+                                          400));
+  return geometry;
+}
+
 void
 FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline)
 {
-  pipeline.SetGeometry(geometry);
+  pipeline.GetTiling()->Update();
+  pipeline.SetGeometry(geometry != nullptr ? geometry : FrontView(pipeline.GetTiling()->GetOutput()).GetPointer());
   pipeline.GetQuality()->Update();
   pipeline.GetCollapse()->SetLevels(
     CountTetrahedraOfLevels(plan.levels, pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra()));

@@ -120,7 +120,10 @@ AdjustTiling(BuildPipeline &                                         pipeline,
       continue;
     }
     const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
-    tried(resolution, count);
+    if (tried)
+    {
+      tried(resolution, count);
+    }
     const double ratio = static_cast<double>(count) / static_cast<double>(search.tetrahedra);
     if (!best || std::abs(std::log(ratio)) < bestError)
     {
