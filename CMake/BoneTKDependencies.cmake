@@ -1,14 +1,13 @@
 # The packages BoneTK is built on, found once for the whole tree. BoneTKConfig.cmake.in names the same ones.
-set(BONETK_ITK_COMPONENTS
-    ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOPNG ITKIOGDCM ITKIONRRD ITKImageGrid ITKImageFunction
-    ITKImageIntensity ITKImageFeature ITKSmoothing ITKThresholding ITKDistanceMap ITKConnectedComponents
-    ITKBinaryMathematicalMorphology ITKPath ITKTransform)
+include(BoneTKITKModules)
 set(BONETK_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOPLY IOGeometry FiltersCore)
 
 # GDCM's package configuration names programs that Debian ships apart and says so at length; nothing here runs them.
 set(_bonetk_loglevel "${CMAKE_MESSAGE_LOG_LEVEL}")
 set(CMAKE_MESSAGE_LOG_LEVEL ERROR)
-find_package(ITK 5.2 REQUIRED COMPONENTS ${BONETK_ITK_COMPONENTS})
+if(NOT BONETK_REMOTE_MODULE)
+  find_package(ITK 5.2 REQUIRED COMPONENTS ${BONETK_ITK_COMPONENTS})
+endif()
 set(CMAKE_MESSAGE_LOG_LEVEL "${_bonetk_loglevel}")
 find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -76,8 +76,9 @@ template <typename TMesh>
 void
 AtlasRegistrationFilter<TMesh>::GenerateData()
 {
-  const TMesh * standard = this->GetStandard();
-  MeshArrays    arrays = standard->GetArrays();
+  const Execution execution(this);
+  const TMesh *   standard = this->GetStandard();
+  MeshArrays      arrays = standard->GetArrays();
   try
   {
     if (m_Standard == nullptr || m_StandardTime != standard->GetMTime())
@@ -85,7 +86,7 @@ AtlasRegistrationFilter<TMesh>::GenerateData()
       m_Standard = std::make_unique<StandardModel>(arrays);
       m_StandardTime = standard->GetMTime();
     }
-    arrays.points = m_Standard->Register(this->TakeSubject(), this->GetParameters(), m_Report, Execution(this));
+    arrays.points = m_Standard->Register(this->TakeSubject(), this->GetParameters(), m_Report, execution);
   }
   catch (const std::logic_error & error)
   {
@@ -100,6 +101,7 @@ AtlasRegistrationFilter<TMesh>::GenerateData()
   arrays.maximumDegree = -1;
   arrays.quantity = DensityQuantity::Unknown;
   this->GetOutput()->SetArrays(std::move(arrays));
+  execution.Report(1.0);
 }
 
 template <typename TMesh>

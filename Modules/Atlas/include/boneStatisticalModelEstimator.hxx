@@ -79,6 +79,7 @@ template <typename TMesh>
 void
 StatisticalModelEstimator<TMesh>::GenerateData()
 {
+  const Execution           execution(this);
   TrainingSet::ConstPointer set = this->GetInput();
   if (set.IsNull())
   {
@@ -89,9 +90,10 @@ StatisticalModelEstimator<TMesh>::GenerateData()
     }
     set = subjects.GetPointer();
   }
-  TrainingResult result = TrainModel(*set, this->GetParameters(), Execution(this));
+  TrainingResult result = TrainModel(*set, this->GetParameters(), execution);
   m_Deviations = std::move(result.subjects);
   this->GetOutput()->SetContent(std::move(result.content));
+  execution.Report(1.0);
 }
 
 template <typename TMesh>

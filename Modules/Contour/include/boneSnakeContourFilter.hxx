@@ -223,6 +223,7 @@ void
 SnakeContourFilter<TInputImage, TLabelImage>::GenerateData()
 {
   m_Report = {};
+  const Execution             execution(this);
   std::array<unsigned int, 3> axes{};
   const SliceFrame            frame = this->MakeFrame(axes);
   const bool                  labelled = this->GetLabelImage() != nullptr;
@@ -234,7 +235,7 @@ SnakeContourFilter<TInputImage, TLabelImage>::GenerateData()
                     labelled ? &label : nullptr,
                     this->GetInitialContours(),
                     m_Parameters,
-                    Execution(this),
+                    execution,
                     *this->GetOutput(),
                     m_Report);
   }
@@ -243,6 +244,7 @@ SnakeContourFilter<TInputImage, TLabelImage>::GenerateData()
     itkExceptionMacro("" << error.what());
   }
   this->GetOutput()->Verify();
+  execution.Report(1.0);
 }
 
 template <typename TInputImage, typename TLabelImage>

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneHierarchyLevelFilter.h"
 
+#include "boneExecution.h"
+
 namespace bone
 {
 void
@@ -15,6 +17,7 @@ HierarchyLevelFilter::GenerateData()
                                << '.');
   }
   this->GetOutput()->SetArrays(hierarchy->GetMesh(m_Level)->GetArrays());
+  Execution(this).Report(1.0);
 }
 
 void

@@ -35,13 +35,14 @@ template <typename TMesh>
 void
 MeshToMeshFilter<TMesh>::GenerateData()
 {
+  const Execution  execution(this);
   const MeshArrays input = this->CopyInput();
   TetraComplex     complex(input);
   if (this->NeedsPositiveCells())
   {
     this->MakePositive(input, complex);
   }
-  this->Improve(complex, Execution(this, 0.0, 0.95));
+  this->Improve(complex, execution.Part(0.0, 0.95));
   std::vector<IdType> pointId, cellSlot;
   TMesh *             output = this->GetOutput();
   output->SetArrays(complex.Compact(input, pointId, cellSlot));
@@ -54,6 +55,7 @@ MeshToMeshFilter<TMesh>::GenerateData()
                         << inverted << " tetrahedra; use a mesh with double coordinates.");
     }
   }
+  execution.Report(1.0);
 }
 } // namespace bone
 

@@ -6,6 +6,8 @@
 
 #include "boneAttenuation.h"
 
+#include <itkImageRegionConstIterator.h>
+#include <itkImageRegionIterator.h>
 #include <itkUnaryFunctorImageFilter.h>
 
 namespace bone
@@ -80,6 +82,17 @@ protected:
   {
     this->GetFunctor().curve = AttenuationCurve{ m_Parameters, m_AttenuationTable };
   }
+  /** Without the superclass's report of progress by pixels, which the threader reports too, by pieces. */
+  void
+  DynamicThreadedGenerateData(const typename TOutputImage::RegionType & region) override
+  {
+    itk::ImageRegionConstIterator<TInputImage> from(this->GetInput(), region);
+    for (itk::ImageRegionIterator<TOutputImage> to(this->GetOutput(), region); !to.IsAtEnd(); ++to, ++from)
+    {
+      to.Set(this->GetFunctor()(from.Get()));
+    }
+  }
+
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override
   {

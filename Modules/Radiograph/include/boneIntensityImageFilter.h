@@ -6,6 +6,8 @@
 
 #include "boneDetectorParameters.h"
 
+#include <itkImageRegionConstIterator.h>
+#include <itkImageRegionIterator.h>
 #include <itkUnaryFunctorImageFilter.h>
 
 #include <cmath>
@@ -74,6 +76,17 @@ protected:
   {
     this->GetFunctor().incident = m_Parameters.incidentIntensity;
   }
+  /** Without the superclass's report of progress by pixels, which the threader reports too, by pieces. */
+  void
+  DynamicThreadedGenerateData(const typename TOutputImage::RegionType & region) override
+  {
+    itk::ImageRegionConstIterator<TInputImage> from(this->GetInput(), region);
+    for (itk::ImageRegionIterator<TOutputImage> to(this->GetOutput(), region); !to.IsAtEnd(); ++to, ++from)
+    {
+      to.Set(this->GetFunctor()(from.Get()));
+    }
+  }
+
   void
   PrintSelf(std::ostream & os, itk::Indent indent) const override
   {

@@ -1,0 +1,299 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneFilterCases.h"
+
+#include <gtest/gtest.h>
+#include <itkCommand.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <sstream>
+
+// What every filter promises, whatever it does.
+
+namespace bone
+{
+namespace test
+{
+namespace
+{
+template <typename T>
+void
+Append(std::string & bytes, const T & value)
+{
+  bytes.append(reinterpret_cast<const char *>(&value), sizeof(T));
+}
+
+void
+Append(std::string & bytes, const Mesh * mesh)
+{
+  const MeshArrays arrays = mesh->GetArrays();
+  for (const Vector3 & p : arrays.points)
+  {
+    Append(bytes, std::array<double, 3>{ p.x(), p.y(), p.z() });
+  }
+  for (const Id4 & cell : arrays.tetrahedra)
+  {
+    Append(bytes, cell);
+  }
+  for (const double c : arrays.coefficients)
+  {
+    Append(bytes, c);
+  }
+}
+
+/** Everything that an output holds, as bytes. */
+std::string
+BytesOf(const itk::DataObject * output)
+{
+  std::string bytes;
+  if (const auto * mesh = dynamic_cast<const Mesh *>(output))
+  {
+    Append(bytes, mesh);
+  }
+  else if (const auto * hierarchy = dynamic_cast<const DensityHierarchy<Mesh> *>(output))
+  {
+    for (std::size_t level = 0; level < hierarchy->GetNumberOfLevels(); ++level)
+    {
+      Append(bytes, hierarchy->GetMesh(level));
+    }
+  }
+  else if (const auto * stack = dynamic_cast<const ContourStack *>(output))
+  {
+    for (const ContourSlice & slice : stack->GetSlices())
+    {
+      for (const Contour & contour : slice.contours)
+      {
+        for (const Vector3 & p : contour.points)
+        {
+          Append(bytes, std::array<double, 3>{ p.x(), p.y(), p.z() });
+        }
+      }
+    }
+  }
+  else if (const auto * image = dynamic_cast<const CTImage *>(output))
+  {
+    const std::size_t pixels = image->GetBufferedRegion().GetNumberOfPixels();
+    bytes.assign(reinterpret_cast<const char *>(image->GetBufferPointer()), pixels * sizeof(float));
+  }
+  else if (const auto * model = dynamic_cast<const StatisticalModel *>(output))
+  {
+    Append(bytes, model->GetContent().shape.GetDimension());
+    const MeshArrays sample = model->Synthesize(Eigen::VectorXd::Ones(1));
+    for (const Vector3 & p : sample.points)
+    {
+      Append(bytes, std::array<double, 3>{ p.x(), p.y(), p.z() });
+    }
+  }
+  return bytes;
+}
+
+std::string
+BytesOf(itk::ProcessObject & filter)
+{
+  std::string bytes;
+  for (const auto & output : filter.GetOutputs())
+  {
+    bytes += BytesOf(output.GetPointer());
+  }
+  return bytes;
+}
+
+/** Another value of a parameter's type. */
+template <typename T>
+T
+Another(const T & value)
+{
+  if constexpr (std::is_same_v<T, bool>)
+  {
+    return !value;
+  }
+  else if constexpr (std::is_enum_v<T>)
+  {
+    return static_cast<T>(static_cast<int>(value) == 0 ? 1 : 0);
+  }
+  else if constexpr (std::is_arithmetic_v<T>)
+  {
+    return static_cast<T>(std::isfinite(static_cast<double>(value)) ? value + 1 : 1);
+  }
+  else
+  {
+    T longer = value;
+    longer.push_back({});
+    return longer;
+  }
+}
+
+/** The progress that a filter tells of. */
+struct Progress
+{
+  explicit Progress(itk::ProcessObject * filter)
+  {
+    filter->AddObserver(itk::ProgressEvent(), [this, filter](const itk::EventObject &) {
+      const float now = filter->GetProgress();
+      falls = falls || now < last;
+      last = now;
+      steps.insert(now);
+      if (stopAt <= now)
+      {
+        filter->AbortGenerateDataOn();
+      }
+    });
+  }
+  std::set<float> steps;
+  float           last{ 0.0F };
+  bool            falls{ false };
+  float           stopAt{ 2.0F };
+};
+
+template <typename TCase>
+class Filter : public testing::Test
+{
+protected:
+  using FilterType = typename TCase::Filter;
+
+  static typename FilterType::Pointer
+  Make()
+  {
+    auto filter = FilterType::New();
+    TCase::Connect(*filter, false);
+    return filter;
+  }
+
+  static std::string
+  WhyItFails(itk::ProcessObject * filter)
+  {
+    try
+    {
+      filter->Update();
+    }
+    catch (const itk::ExceptionObject & error)
+    {
+      return error.GetDescription();
+    }
+    return "no failure";
+  }
+};
+
+using Cases = testing::Types<PhantomCase,
+                             SnakeCase,
+                             SliceCase,
+                             ResampleCase,
+                             AxisCase,
+                             TilingCase,
+                             QualityCase,
+                             SmoothingCase,
+                             SwapCase,
+                             FitCase,
+                             CalibrationCase,
+                             DensityImageCase,
+                             CollapseCase,
+                             LevelCase,
+                             DRRCase,
+                             DRROfViewCase,
+                             DerivativeCase,
+                             AdjointCase,
+                             VoxelDRRCase,
+                             AttenuationCase,
+                             IntensityCase,
+                             NoiseCase,
+                             RegistrationCase,
+                             EstimatorCase>;
+TYPED_TEST_SUITE(Filter, Cases, );
+
+TYPED_TEST(Filter, PrintsItsNameAndParameters)
+{
+  const auto         filter = this->Make();
+  std::ostringstream text;
+  filter->Print(text);
+  EXPECT_NE(text.str().find(filter->GetNameOfClass()), std::string::npos);
+  TypeParam::VisitSetters([&text](const std::string & name, const auto &, const auto &) {
+    EXPECT_NE(text.str().find(name + ": "), std::string::npos) << name;
+  });
+  EXPECT_NE(dynamic_cast<typename TypeParam::Filter *>(filter->CreateAnother().GetPointer()), nullptr);
+}
+
+TYPED_TEST(Filter, NamesAnInputThatIsMissingOrNull)
+{
+  auto empty = TypeParam::Filter::New();
+  EXPECT_NE(this->WhyItFails(empty), "no failure");
+  auto filter = this->Make();
+  TypeParam::Connect(*filter, true);
+  const std::string why = this->WhyItFails(filter);
+  EXPECT_NE(why.find(TypeParam::input), std::string::npos) << why;
+  TypeParam::Connect(*filter, false);
+  EXPECT_EQ(this->WhyItFails(filter), "no failure");
+}
+
+TYPED_TEST(Filter, SettersMarkItModifiedOnChangeAlone)
+{
+  auto filter = this->Make();
+  TypeParam::VisitSetters([&filter](const std::string & name, const auto & set, const auto & get) {
+    const auto before = filter->GetMTime();
+    set(*filter, get(*filter));
+    EXPECT_EQ(filter->GetMTime(), before) << name << " set to what it was";
+    const auto other = Another(get(*filter));
+    set(*filter, other);
+    EXPECT_GT(filter->GetMTime(), before) << name;
+    EXPECT_EQ(get(*filter), other) << name;
+  });
+}
+
+TYPED_TEST(Filter, RunsAgainAfterAChangeAlone)
+{
+  auto filter = this->Make();
+  int  runs = 0;
+  filter->AddObserver(itk::StartEvent(), [&runs](const itk::EventObject &) { ++runs; });
+  filter->Update();
+  filter->Update();
+  EXPECT_EQ(runs, 1);
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(runs, 2);
+}
+
+TYPED_TEST(Filter, ProgressRisesFromNoneToAll)
+{
+  auto     filter = this->Make();
+  Progress progress(filter);
+  filter->Update();
+  EXPECT_FALSE(progress.falls);
+  EXPECT_NEAR(filter->GetProgress(), 1.0F, 1e-4F);
+  if (TypeParam::isLong)
+  {
+    EXPECT_GE(progress.steps.size(), 10U);
+  }
+}
+
+TYPED_TEST(Filter, AnAbortLeavesItReusable)
+{
+  auto reference = this->Make();
+  reference->Update();
+  auto     filter = this->Make();
+  Progress progress(filter);
+  progress.stopAt = TypeParam::isLong ? 0.4F : 0.0F;
+  EXPECT_THROW(filter->Update(), itk::ProcessAborted);
+  progress.stopAt = 2.0F;
+  progress.last = 0.0F;
+  filter->Update();
+  EXPECT_EQ(BytesOf(*filter), BytesOf(*reference));
+}
+
+TYPED_TEST(Filter, OneAndTwoThreadsGiveTheSame)
+{
+  std::string bytes[2];
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    auto filter = this->Make();
+    filter->SetNumberOfWorkUnits(1 + i);
+    filter->Update();
+    bytes[i] = BytesOf(*filter);
+  }
+  EXPECT_FALSE(bytes[0].empty());
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+} // namespace
+} // namespace test
+} // namespace bone
