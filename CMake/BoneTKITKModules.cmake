@@ -2,4 +2,4 @@
 set(BONETK_ITK_COMPONENTS
     ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOPNG ITKIOGDCM ITKIONRRD ITKImageGrid ITKImageFunction
     ITKImageIntensity ITKImageFeature ITKSmoothing ITKThresholding ITKDistanceMap ITKConnectedComponents
-    ITKBinaryMathematicalMorphology ITKPath ITKTransform)
+    ITKBinaryMathematicalMorphology ITKPath ITKTransform ITKGDCM)

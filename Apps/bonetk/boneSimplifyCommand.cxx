@@ -47,7 +47,7 @@ Run(const Options & options, Session & session)
 {
   TetraCollapseParameters parameters = options.parameters;
   Verify(parameters);
-  const auto              mesh = ReadDensityMesh(options.mesh);
+  const auto mesh = ReadDensityMesh(options.mesh);
   if (options.levels || (parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
                          parameters.maximumSurfaceDistances.empty()))
   {

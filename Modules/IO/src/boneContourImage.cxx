@@ -112,12 +112,16 @@ private:
         best = static_cast<int>(k);
       }
     }
-    const auto   k = static_cast<std::size_t>(best);
-    const double step = n < 2   ? std::numeric_limits<double>::max()
-                        : k > 0 ? m_Stack.GetHeight(k) - m_Stack.GetHeight(k - 1)
-                                : m_Stack.GetHeight(1) - m_Stack.GetHeight(0);
-    // The only slice there is takes what is within half a millimetre.
-    return least <= (n < 2 ? 0.5 : 0.5 * step + 1e-6) ? best : -1;
+    if (n < 2)
+    {
+      return least <= 0.5 ? best : -1; // the only slice there is takes what is within half a millimetre
+    }
+    // Beyond the first and the last slice, half the distance to the next one.
+    const bool   below = height < m_Stack.GetHeight(0);
+    const bool   above = height > m_Stack.GetHeight(n - 1);
+    const double step =
+      below ? m_Stack.GetHeight(1) - m_Stack.GetHeight(0) : m_Stack.GetHeight(n - 1) - m_Stack.GetHeight(n - 2);
+    return (!below && !above) || least <= 0.5 * step + 1e-6 ? best : -1;
   }
 
   // Voxels first .. last - 1 of the line q + i d that lie inside the contour.

@@ -119,6 +119,37 @@ TEST(ContourImage, VoxelsHaveTheRegionOfTheNearestSlice)
   EXPECT_EQ(CountWrong(RasterizeContours(MakeStack(), MakeGrid(direction, 0.9))), 0);
 }
 
+TEST(ContourImage, SlicesOfAnyDistanceLeaveNoVoxelOut)
+{
+  // Narrow gap, then a wide one: a disk on slices at 0, 1 and 7 mm.
+  auto                         stack = ContourStack::New();
+  ContourStack::SliceContainer slices(3);
+  const double                 heights[] = { 0.0, 1.0, 7.0 };
+  for (int k = 0; k < 3; ++k)
+  {
+    slices[k].origin = Vector3(0, 0, heights[k]);
+    Contour outer;
+    outer.points = Circle(stack, 12, heights[k]);
+    slices[k].contours = { outer };
+  }
+  stack->SetSlices(slices);
+  auto grid = LabelImage::New();
+  grid->SetRegions(LabelImage::SizeType{ { 1, 1, 24 } }); // from z = -2 in steps of half a millimetre
+  LabelImage::SpacingType spacing;
+  spacing.Fill(0.5);
+  grid->SetSpacing(spacing);
+  LabelImage::PointType origin;
+  origin.Fill(0.0);
+  origin[2] = -2.0;
+  grid->SetOrigin(origin);
+  const auto labels = RasterizeContours(stack, grid);
+  for (int k = 0; k < 24; ++k)
+  {
+    const double z = -2.0 + 0.5 * k;
+    EXPECT_EQ(labels->GetPixel({ { 0, 0, k } }), z >= -0.5 && z <= 10.0 ? Cortical : Outside) << z;
+  }
+}
+
 TEST(ContourImage, AnObliqueGridCutsAcrossSlices)
 {
   LabelImage::DirectionType direction;

@@ -39,8 +39,8 @@ CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest);
 /** \brief Sets input and parameters on the pipeline and finds the resolution.
  *
  * Slice step and contour spacing are those of the plan where it has them, else such that the mesh has about the number
- * of tetrahedra asked for after the quality stage, which is then up to date (\ref AdjustResolution). `tried`, where it is
- * not empty, is told of each tiling. */
+ * of tetrahedra asked for after the quality stage, which is then up to date (\ref AdjustResolution). `tried`, where it
+ * is not empty, is told of each tiling. */
 Resolution
 PlanBuild(const BuildInput &                                      input,
           const BuildParameters &                                 parameters,
