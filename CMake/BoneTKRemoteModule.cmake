@@ -1,8 +1,10 @@
 # What ITK needs to know of BoneTK where it builds it as a remote module (itk-module.cmake): libraries, include folders,
 # and the packages that users of these libraries have to find.
 list(TRANSFORM BONETK_MODULES_ALL PREPEND bone OUTPUT_VARIABLE BoneTK_LIBRARIES)
-list(TRANSFORM BONETK_MODULES_ALL REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/Modules/\\1/include"
-     OUTPUT_VARIABLE BoneTK_INCLUDE_DIRS)
+foreach(module IN LISTS BONETK_MODULES_ALL)
+  bonetk_folders(${PROJECT_SOURCE_DIR}/Modules/${module}/include folders)
+  list(APPEND BoneTK_INCLUDE_DIRS ${folders})
+endforeach()
 set(BoneTK_EXPORT_CODE_INSTALL "
 find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
