@@ -116,7 +116,7 @@ Another(const T & value)
   }
   else if constexpr (std::is_arithmetic_v<T>)
   {
-    return static_cast<T>(std::isfinite(static_cast<double>(value)) ? value + 1 : 1);
+    return static_cast<T>(!std::isfinite(static_cast<double>(value)) ? 1 : value > 0 ? value - 1 : value + 1);
   }
   else
   {
