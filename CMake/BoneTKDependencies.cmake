@@ -1,6 +1,5 @@
-# The packages BoneTK is built on, found once for the whole tree. BoneTKConfig.cmake.in names the same ones.
+# The packages BoneTK is built on, found once for the whole tree.
 include(BoneTKITKModules)
-set(BONETK_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOPLY IOGeometry FiltersCore)
 
 # GDCM's package configuration names programs that Debian ships apart and says so at length; nothing here runs them.
 set(_bonetk_loglevel "${CMAKE_MESSAGE_LOG_LEVEL}")
@@ -9,12 +8,7 @@ if(NOT BONETK_REMOTE_MODULE)
   find_package(ITK 5.2 REQUIRED COMPONENTS ${BONETK_ITK_COMPONENTS})
 endif()
 set(CMAKE_MESSAGE_LOG_LEVEL "${_bonetk_loglevel}")
-find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(nlohmann_json REQUIRED)
-find_package(HDF5 REQUIRED COMPONENTS C CXX)
-find_package(Boost REQUIRED)
-find_package(Threads REQUIRED)
+include(BoneTKPackages)
 
 if(BONETK_SANITIZE)
   # Eigen and ITK are not instrumented, which the address sanitizer allows.

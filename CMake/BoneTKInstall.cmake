@@ -5,5 +5,5 @@ configure_package_config_file(CMake/BoneTKConfig.cmake.in ${CMAKE_CURRENT_BINARY
                               INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/BoneTKConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/BoneTKConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/BoneTKConfigVersion.cmake
-        DESTINATION ${config_dir})
+        CMake/BoneTKPackages.cmake DESTINATION ${config_dir})
 install(EXPORT BoneTKTargets NAMESPACE BoneTK:: DESTINATION ${config_dir})

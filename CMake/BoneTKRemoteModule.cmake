@@ -5,14 +5,7 @@ foreach(module IN LISTS BONETK_MODULES_ALL)
   bonetk_folders(${PROJECT_SOURCE_DIR}/Modules/${module}/include folders)
   list(APPEND BoneTK_INCLUDE_DIRS ${folders})
 endforeach()
-set(BoneTK_EXPORT_CODE_INSTALL "
-find_package(VTK 9.1 REQUIRED COMPONENTS ${BONETK_VTK_COMPONENTS})
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(nlohmann_json REQUIRED)
-find_package(HDF5 REQUIRED COMPONENTS C CXX)
-find_package(Boost REQUIRED)
-find_package(Threads REQUIRED)
-")
+file(READ ${CMAKE_CURRENT_LIST_DIR}/BoneTKPackages.cmake BoneTK_EXPORT_CODE_INSTALL)
 set(BoneTK_EXPORT_CODE_BUILD "
 if(NOT ITK_BINARY_DIR)
   ${BoneTK_EXPORT_CODE_INSTALL}

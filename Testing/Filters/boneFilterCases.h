@@ -134,7 +134,7 @@ BONE_CASE(LevelCase, HierarchyLevelFilter, "Hierarchy", false, BONE_NO_PARAMETER
   f.SetInput(missing ? nullptr : s.pipeline.GetCollapse()->GetOutput());
   f.SetLevel(1);
 });
-BONE_CASE(DRRCase, DRRImageFilter<>, "Mesh", false, BONE_DRR_PARAMETERS, {
+BONE_CASE(DRRCase, DRRImageFilter<>, "Mesh", false, BONE_REGION_RANGE_PARAMETERS, {
   f.SetInput(missing ? nullptr : s.pipeline.GetFit()->GetOutput());
   f.SetGeometry(s.geometry);
 });
@@ -142,7 +142,7 @@ BONE_CASE(DRROfViewCase, DRRImageFilter<>, "Geometry", false, BONE_RADIOGRAPH_PA
   f.SetInput(s.pipeline.GetFit()->GetOutput());
   f.SetGeometry(missing ? nullptr : s.geometry.GetPointer());
 });
-BONE_CASE(DerivativeCase, DRRDerivativeImageFilter<>, "Mesh", false, BONE_DRR_PARAMETERS, {
+BONE_CASE(DerivativeCase, DRRDerivativeImageFilter<>, "Mesh", false, BONE_REGION_RANGE_PARAMETERS, {
   f.SetInput(missing ? nullptr : s.pipeline.GetFit()->GetOutput());
   f.SetGeometry(s.geometry);
   RadiographModes modes;

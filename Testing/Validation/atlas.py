@@ -20,7 +20,7 @@ REPORT = HERE.parents[2] / "Documentation" / "validation" / "atlas.md"
 
 class Validation:
     def __init__(self, build, scratch):
-        self.bonetk = build / "Examples" / "bonetk" / "bonetk"
+        self.bonetk = build / "Apps" / "bonetk" / "bonetk"
         self.program = build / "Testing" / "Validation" / "boneAtlasValidation"
         self.scratch = scratch
 

@@ -9,6 +9,7 @@
 #include <itkRayCastInterpolateImageFunction.h> // before other versions of Eigen than ITK's
 
 #include "boneGeometryIO.h"
+#include "boneMeshWalk.h"
 #include "boneImageIO.h"
 #include "boneMeshDerivatives.h"
 #include "boneMeshIO.h"
@@ -75,12 +76,13 @@ TimeModel(const std::string & name, const std::string & path, const XRayGeometry
   Time("once " + name, 40, [&]() { ProjectMesh(mesh.points, mesh, view, {}, TwoThreads(), image.data()); });
   std::vector<std::int32_t> passed(image.size());
   WalkMesh(mesh.points, mesh, view, {}, TwoThreads(), image.data(), passed.data());
-  double intervals = 0;
+  double intervals = 0, rays = 0;
   for (std::int32_t cells : passed)
   {
     intervals += cells;
+    rays += cells > 0 ? 1 : 0;
   }
-  std::cout << "cells " << name << ' ' << mesh.tetrahedra.size() << ' ' << intervals << '\n';
+  std::cout << "cells " << name << ' ' << mesh.tetrahedra.size() << ' ' << intervals << ' ' << rays << '\n';
 }
 
 void

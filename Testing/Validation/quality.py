@@ -147,7 +147,7 @@ class Row:
 class Validation:
     def __init__(self, build, check, keep):
         self.keep = keep
-        self.bonetk = build / "Examples" / "bonetk" / "bonetk"
+        self.bonetk = build / "Apps" / "bonetk" / "bonetk"
         self.program = build / "Testing" / "Validation" / "boneQualityValidation"
         self.check = check
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Hierarchies of whole bones: are all levels valid and within their bars?
+"""Hierarchies of whole bones: are all levels valid and within their limits?
 
     BONETK_DATA=... Testing/Validation/simplification.py BUILD_FOLDER [--check PROGRAM] [--models FOLDER] [--only TEXT]
 
@@ -25,7 +25,7 @@ REPORT = HERE.parents[2] / "Documentation" / "validation" / "simplification.md"
 COUNTS = (6138, 2438)
 HIP = "clinical hip"
 # Of level 2 and level 3: regions' volumes (%), mean distance of the boundary (mm), density error (% of the range).
-BARS = ((1.0, 0.25, 4.5), (3.0, 0.6, 6.0))
+LIMITS = ((1.0, 0.25, 4.5), (3.0, 0.6, 6.0))
 SIZES = (8000, 16000, 33000, 66000, 130000, 260000, 500000)
 MESHES = 1000
 
@@ -73,7 +73,7 @@ def bones(data):
 
 class Validation:
     def __init__(self, options, folder):
-        self.bonetk = options.build / "Examples" / "bonetk" / "bonetk"
+        self.bonetk = options.build / "Apps" / "bonetk" / "bonetk"
         self.program = options.build / "Testing" / "Validation" / "boneSimplificationValidation"
         self.check, self.folder = options.check, folder
         self.models = options.models or folder
@@ -113,7 +113,7 @@ class Validation:
             level["check"] = self.checked(f"{prefix}_L{number}.vtu")
             level["coefficients"] = 20 * level["tetrahedra"]
             if number > 1:
-                self.failed += [f"{bone.name}, level {number}: {what}" for what in misses(level, BARS[number - 2])]
+                self.failed += [f"{bone.name}, level {number}: {what}" for what in misses(level, LIMITS[number - 2])]
         if not found["same"]:
             self.failed.append(f"{bone.name}: not the same from run to run")
         return found
@@ -125,8 +125,8 @@ def distance(level, region):
     return max(found["to"]["mean"], found["from"]["mean"])
 
 
-def misses(level, bars):
-    volume, surface, error = bars
+def misses(level, limits):
+    volume, surface, error = limits
     least = min(level["regions"], key=lambda r: r["faces"])
     if not (level["valid"] and level["check"]["valid"]):
         yield "not valid"
@@ -201,10 +201,10 @@ def levels_part(validation, chosen):
             "the surface (the larger way) of the boundary and of the interfaces, and largest of all. rms: integrated difference to level 1.",
             "Error: mean absolute error at the label's voxels, % of the 1..99 % range. Seconds: processor time, both levels, under load.",
             "Every hierarchy was made twice with two threads and once with one: byte for byte the same.\n"]
-    bars = [f"Bars of level 2 and 3: volumes {BARS[0][0]:.0f} and {BARS[1][0]:.0f} %, boundary {BARS[0][1]} and {BARS[1][1]} mm,",
-            f"error {BARS[0][2]} and {BARS[1][2]} %, angles 1.5 in the cortical layer and 3 elsewhere, counts to within a collapse.",
+    limits = [f"Limits of level 2 and 3: volumes {LIMITS[0][0]:.0f} and {LIMITS[1][0]:.0f} %, boundary {LIMITS[0][1]} and {LIMITS[1][1]} mm,",
+            f"error {LIMITS[0][2]} and {LIMITS[1][2]} %, angles 1.5 in the cortical layer and 3 elsewhere, counts to within a collapse.",
             "Not met: " + ("; ".join(validation.failed) or "none") + ".\n"]
-    return "\n".join([*head, table(LEVEL_HEAD, rows), *bars, *out])
+    return "\n".join([*head, table(LEVEL_HEAD, rows), *limits, *out])
 
 
 def decimated(first, count, scale, out):

@@ -15,6 +15,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -39,6 +40,7 @@ Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled witho
   each real bone. Dice counts voxel centres inside against the mesh's own volume: large voxels have corners outside, and a
   bone that leaves the image ends at its last slice, so it can come out above 1. Seconds are of one core.
 - Valid: by {checker}.
+- Rows of sets: the smallest and the largest; *filled*, *left out* and *parted* in all of them; the longest time.
 """
 
 
@@ -66,7 +68,7 @@ def cases(data):
 
 class Validation:
     def __init__(self, build, check):
-        self.bonetk = build / "Examples" / "bonetk" / "bonetk"
+        self.bonetk = build / "Apps" / "bonetk" / "bonetk"
         self.program = build / "Testing" / "Validation" / "boneTilingValidation"
         self.check = check
         self.phantoms = tempfile.TemporaryDirectory()
@@ -97,7 +99,8 @@ class Validation:
                 else:
                     ct, labels = self.inputs(source)
                     of_label = [] if label is None else ["--label", label]
-                    self.run([self.bonetk, "contours", ct, "--labels", labels, *of_label, "--slice-step", step, "--axis", axis,
+                    self.run([self.bonetk, "contours", ct, "--labels", labels, *of_label, "--slice-step", step,
+                              "--regular-slices", "--axis", axis,
                               "--contour-spacing", spacing, "--quiet", "--threads", 1, "-o", *contours])
                 values = dict(line.split() for line in self.run([self.program, *contours, mesh]).stdout.splitlines())
                 row = {key: value if "/" in value else float(value) for key, value in values.items()}
@@ -144,6 +147,26 @@ def table_row(case, row):
             f"{row['left_out']:.0f} | {row['parted']:.0f} | {dice} | {row['mean_angle']:.0f} | {row['seconds']:.1f} |")
 
 
+def summary(lines):
+    """Rows for the report: real bones and what is not as it should be one by one, the rest by sets."""
+    single, sets = [], collections.defaultdict(list)
+    for line in lines:
+        columns = [column.strip() for column in line.split("|")[1:-1]]
+        fine = columns[2] == "yes" and columns[4] == "0"
+        kind = re.match(r"(femur shape|phantom \w+|random body)", columns[0])
+        if kind and fine:
+            sets[kind.group(1) + re.sub(r"^[^,]*", "", columns[0]), columns[1]].append(columns)
+        else:
+            single.append(line)
+    rows = []
+    for (kind, spacing), cases in sets.items():
+        cells, groups, filled, left_out, parted = ([int(c[k]) for c in cases] for k in (5, 6, 7, 8, 9))
+        angle, seconds = ([float(c[k]) for c in cases] for k in (11, 12))
+        rows.append(f"| {kind}: {len(cases)} | {spacing} | all | | 0 | {min(cells)} to {max(cells)} | {min(groups)} to {max(groups)} | "
+                    f"{sum(filled)} | {sum(left_out)} | {sum(parted)} | | {min(angle):.0f} to {max(angle):.0f} | {max(seconds):.1f} |")
+    return single + rows
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
@@ -158,7 +181,7 @@ def main():
     checker = "an independent checker, inner layers included" if options.check else "`bonetk validate`"
     out = [INTRODUCTION.format(checker=checker), "| bone, slice step | spacing, mm | valid | components/handles/voids | other slabs | tetrahedra | groups | filled | "
            "left out | parted | against the label | mean least angle | s |", "|" + "---|" * 13]
-    invalid = differing = 0
+    invalid, differing, lines = 0, 0, []
     done = {"|".join(line.split("|")[:3]): line for line in options.resume.read_text().splitlines()
             if "| yes |" in line} if options.resume else {}
 
@@ -170,8 +193,9 @@ def main():
             columns = [column.strip() for column in line.split("|")]
             invalid += columns[3] != "yes"
             differing += columns[5] != "0"
-            out.append(line)
+            lines.append(line)
             print(line, flush=True)
+    out += summary(lines)
     out.append(f"\n{len(chosen) - invalid} of {len(chosen)} valid; {differing} with slabs of other topology than the stack's.")
     print(out[-1].strip())
     if options.only == "" and options.sample == 1:

@@ -34,7 +34,7 @@ Written by `Testing/Validation/tiling_tables.py`. Meshes as tiled, before any sm
 
 class Tables:
     def __init__(self, build, check, folder):
-        self.bonetk = build / "Examples" / "bonetk" / "bonetk"
+        self.bonetk = build / "Apps" / "bonetk" / "bonetk"
         self.program = build / "Testing" / "Validation" / "boneTilingValidation"
         self.check = check
         self.folder = pathlib.Path(folder)

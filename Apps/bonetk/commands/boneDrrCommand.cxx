@@ -25,7 +25,6 @@ struct Options
   std::string mask;
   bool        attenuation{ false };
   bool        bilinear{ false };
-  bool        walk{ false };
   int         region{ 0 };
   double      intensity{ 0 };
   int         noise{ 0 };
@@ -49,7 +48,6 @@ MakeSource(const Options & options)
     }
     auto filter = DRRImageFilter<DensityMesh<double>, Radiograph>::New();
     filter->SetInput(ReadDensityMesh(options.input));
-    filter->SetMethod(options.walk ? DRRMethod::Walk : DRRMethod::Projection);
     if (options.region > 0)
     {
       filter->SetMinimumRegion(options.region);
@@ -57,9 +55,9 @@ MakeSource(const Options & options)
     }
     return filter.GetPointer();
   }
-  if (options.walk || options.region > 0)
+  if (options.region > 0)
   {
-    throw UsageError("--walk and --region go with a density mesh only");
+    throw UsageError("--region goes with a density mesh only");
   }
   auto filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
   filter->SetInput(ReadCT(options.input));
@@ -153,13 +151,6 @@ Run(const Options & options, Session & session)
   {
     SaveGeometry(options, views, session);
   }
-  if (options.walk)
-  {
-    const auto &       filter = dynamic_cast<const DRRImageFilter<DensityMesh<double>, Radiograph> &>(*source);
-    std::ostringstream text;
-    text << "on average " << filter.GetMeanCellsPassed() << " tetrahedra a ray that meets any\n";
-    session.Print(text.str());
-  }
 }
 } // namespace
 
@@ -175,7 +166,6 @@ AddDrrCommand(CLI::App & app, Action & action)
   command->add_flag("--attenuation", options->attenuation, "Turn HU into attenuation of water at 60 keV first");
   command->add_flag(
     "--bilinear", options->bilinear, "Turn HU into attenuation, bone along a line of its own (CT only)");
-  command->add_flag("--walk", options->walk, "Walk each ray from cell to cell, slowly, and say how many it passes");
   command
     ->add_option(
       "--region", options->region, "Only this region of the mesh: cortical, trabecular, cavity or its number")

@@ -60,11 +60,7 @@ public:
   BONE_FILTER_PARAMETERS(AtlasRegistrationParameters, BONE_ATLAS_REGISTRATION_PARAMETERS)
 
   /** What the last run did. */
-  const RegistrationReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, RegistrationReport);
 
 protected:
   AtlasRegistrationFilter();

@@ -52,17 +52,9 @@ public:
   /** After an update: the factor of all spacings; 1 without a target. */
   itkGetConstMacro(SpacingScale, double);
   /** After an update: what happened, over all slices. */
-  const SamplingReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, SamplingReport);
   /** What a person should know, in words. */
-  const std::vector<std::string> &
-  GetWarnings() const
-  {
-    return m_Warnings;
-  }
+  itkGetConstReferenceMacro(Warnings, std::vector<std::string>);
 
 protected:
   ContourResampleFilter() = default;

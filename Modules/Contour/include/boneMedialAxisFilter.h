@@ -29,18 +29,14 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(MedialAxisFilter, ContourStackFilter);
 
-  BONE_FILTER_PARAMETERS(MedialAxisParameters, BONE_MEDIAL_AXIS_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(MedialAxisParameters, BONE_MEDIAL_AXIS_PARAMETERS)
 
 protected:
   MedialAxisFilter() = default;
   ~MedialAxisFilter() override = default;
 
-  void
-  VerifyPreconditions() const override;
   ContourSlice
   MakeSlice(const ContourStack & input, std::size_t k) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
 };
 } // namespace bone
 

@@ -77,11 +77,7 @@ public:
   BONE_FILTER_PARAMETERS(SnakeContourParameters, BONE_SNAKE_CONTOUR_PARAMETERS)
 
   /** After an update: what happened slice by slice, and what a person should know. */
-  const ExtractionReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, ExtractionReport);
   const std::vector<std::string> &
   GetWarnings() const
   {

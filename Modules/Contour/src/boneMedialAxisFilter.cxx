@@ -9,13 +9,6 @@
 
 namespace bone
 {
-void
-MedialAxisFilter::VerifyPreconditions() const
-{
-  Superclass::VerifyPreconditions();
-  this->VerifyParameters();
-}
-
 ContourSlice
 MedialAxisFilter::MakeSlice(const ContourStack & input, std::size_t k)
 {
@@ -80,12 +73,5 @@ MedialAxisFilter::MakeSlice(const ContourStack & input, std::size_t k)
     }
   }
   return result;
-}
-
-void
-MedialAxisFilter::PrintSelf(std::ostream & os, itk::Indent indent) const
-{
-  Superclass::PrintSelf(os, indent);
-  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone

@@ -80,39 +80,23 @@ public:
   /** References, through which the line is fitted, and Quantity; none: no line. Takes the place of a given line. */
   void
   SetReferences(const std::vector<DensityReference> & references, DensityQuantity to);
-  const std::vector<DensityReference> &
-  GetReferences() const
-  {
-    return m_References;
-  }
+  itkGetConstReferenceMacro(References, std::vector<DensityReference>);
   /** Names of published laws, applied in this order after the line. */
   void
   SetLaws(const std::vector<std::string> & names);
-  const std::vector<std::string> &
-  GetLaws() const
-  {
-    return m_Laws;
-  }
+  itkGetConstReferenceMacro(Laws, std::vector<std::string>);
 
   /** \name Results of the last run
    * \{ */
   /** The line through the references, with residuals; empty where there were none. */
-  const std::optional<Calibration> &
-  GetCalibration() const
-  {
-    return m_Calibration;
-  }
+  itkGetConstReferenceMacro(Calibration, std::optional<Calibration>);
   /** A law that was applied, and the share of the volume whose mean density lay outside its range. */
   struct Step
   {
     DensityLaw law;
     double     outside;
   };
-  const std::vector<Step> &
-  GetSteps() const
-  {
-    return m_Steps;
-  }
+  itkGetConstReferenceMacro(Steps, std::vector<Step>);
   /** \} */
 
 protected:

@@ -78,11 +78,7 @@ public:
   }
 
   /** After an update: what the fit found. With MaximumError its samples are those of all degrees tried. */
-  const DensityFitReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, DensityFitReport);
 
   /** After an update: the number of coefficients, those that Continuous makes one counted once. */
   itkGetConstMacro(NumberOfFreeCoefficients, std::size_t);

@@ -71,11 +71,7 @@ public:
       this->Modified();
     }
   }
-  PhantomModel::Pointer
-  GetModel() const
-  {
-    return m_Model;
-  }
+  itkGetConstMacro(Model, PhantomModel::Pointer);
 
   /** mm between voxel centres; default 1. */
   itkSetMacro(Spacing, SpacingType);

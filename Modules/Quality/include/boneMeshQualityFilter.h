@@ -57,14 +57,10 @@ public:
   itkSetInputMacro(LabelImage, TLabelImage);
   itkGetInputMacro(LabelImage, TLabelImage);
 
-  BONE_FILTER_PARAMETERS(MeshQualityParameters, BONE_MESH_QUALITY_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(MeshQualityParameters, BONE_MESH_QUALITY_PARAMETERS)
 
   /** What the last run did. */
-  const ImprovementReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, ImprovementReport);
 
 protected:
   MeshQualityFilter()
@@ -74,11 +70,7 @@ protected:
   }
   ~MeshQualityFilter() override = default;
   void
-  VerifyPreconditions() const override;
-  void
   Improve(TetraComplex & complex, const Execution & execution) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
   ImprovementReport m_Report;

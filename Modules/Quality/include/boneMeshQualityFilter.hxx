@@ -13,14 +13,6 @@ namespace bone
 {
 template <typename TMesh, typename TLabelImage>
 void
-MeshQualityFilter<TMesh, TLabelImage>::VerifyPreconditions() const
-{
-  Superclass::VerifyPreconditions();
-  this->VerifyParameters();
-}
-
-template <typename TMesh, typename TLabelImage>
-void
 MeshQualityFilter<TMesh, TLabelImage>::Improve(TetraComplex & complex, const Execution & execution)
 {
   ImprovementParameters parameters;
@@ -45,14 +37,6 @@ MeshQualityFilter<TMesh, TLabelImage>::Improve(TetraComplex & complex, const Exe
   }
   parameters.slices = this->GetInput()->GetCells().slice;
   m_Report = ImproveMesh(complex, parameters, execution);
-}
-
-template <typename TMesh, typename TLabelImage>
-void
-MeshQualityFilter<TMesh, TLabelImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
-{
-  Superclass::PrintSelf(os, indent);
-  PrintParameters(os, indent, this->GetParameters());
 }
 } // namespace bone
 

@@ -38,24 +38,19 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(TetraSmoothingFilter, MeshToMeshFilter);
 
-  BONE_FILTER_PARAMETERS(TetraSmoothingParameters, BONE_TETRA_SMOOTHING_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(TetraSmoothingParameters, BONE_TETRA_SMOOTHING_PARAMETERS)
 
   /** What the last run did. */
-  const SmoothingReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, SmoothingReport);
 
 protected:
   TetraSmoothingFilter() = default;
   ~TetraSmoothingFilter() override = default;
   void
-  VerifyPreconditions() const override;
-  void
-  Improve(TetraComplex & complex, const Execution & execution) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+  Improve(TetraComplex & complex, const Execution & execution) override
+  {
+    m_Report = SmoothPoints(complex, this->GetParameters(), execution);
+  }
   bool
   NeedsPositiveCells() const override
   {
@@ -68,9 +63,5 @@ private:
 
 extern template class TetraSmoothingFilter<DensityMesh<double>>;
 } // namespace bone
-
-#ifndef ITK_MANUAL_INSTANTIATION
-#include "boneTetraSmoothingFilter.hxx"
-#endif
 
 #endif

@@ -28,24 +28,21 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(TetraSwapFilter, MeshToMeshFilter);
 
-  BONE_FILTER_PARAMETERS(TetraSwapParameters, BONE_TETRA_SWAP_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(TetraSwapParameters, BONE_TETRA_SWAP_PARAMETERS)
 
   /** What the last run did. */
-  const FlipReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, FlipReport);
 
 protected:
   TetraSwapFilter() = default;
   ~TetraSwapFilter() override = default;
   void
-  VerifyPreconditions() const override;
-  void
-  Improve(TetraComplex & complex, const Execution & execution) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
+  Improve(TetraComplex & complex, const Execution & execution) override
+  {
+    FlipParameters parameters;
+    static_cast<TetraSwapParameters &>(parameters) = this->GetParameters();
+    m_Report = ImproveByFlips(complex, parameters, {}, nullptr, execution);
+  }
 
 private:
   FlipReport m_Report;
@@ -53,9 +50,5 @@ private:
 
 extern template class TetraSwapFilter<DensityMesh<double>>;
 } // namespace bone
-
-#ifndef ITK_MANUAL_INSTANTIATION
-#include "boneTetraSwapFilter.hxx"
-#endif
 
 #endif

@@ -80,18 +80,14 @@ public:
     return static_cast<const PointGradientType *>(this->itk::ProcessObject::GetOutput("PointGradient"))->Get();
   }
 
-  BONE_FILTER_PARAMETERS(DRRAdjointParameters, BONE_DRR_ADJOINT_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(DRRAdjointParameters, BONE_DRR_ADJOINT_PARAMETERS)
 
 protected:
   DRRAdjointFilter();
   ~DRRAdjointFilter() override = default;
 
   void
-  VerifyPreconditions() const override;
-  void
   GenerateData() override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
   static std::string

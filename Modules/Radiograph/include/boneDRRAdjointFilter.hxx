@@ -22,14 +22,6 @@ DRRAdjointFilter<TMesh, TImage>::DRRAdjointFilter()
 }
 
 template <typename TMesh, typename TImage>
-void
-DRRAdjointFilter<TMesh, TImage>::VerifyPreconditions() const
-{
-  Superclass::VerifyPreconditions();
-  this->VerifyParameters();
-}
-
-template <typename TMesh, typename TImage>
 std::vector<float>
 DRRAdjointFilter<TMesh, TImage>::GetWeights(unsigned int view) const
 {
@@ -101,14 +93,6 @@ DRRAdjointFilter<TMesh, TImage>::GenerateData()
   this->SetResult(std::move(arrays));
   static_cast<PointGradientType *>(this->itk::ProcessObject::GetOutput("PointGradient"))->Set(gradient);
   this->UpdateProgress(1.0f);
-}
-
-template <typename TMesh, typename TImage>
-void
-DRRAdjointFilter<TMesh, TImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
-{
-  Superclass::PrintSelf(os, indent);
-  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone
 

@@ -16,9 +16,9 @@ namespace bone
  * mode m of RadiographModes: the radiograph's unit per mm, per radian or per unit of the mode. See
  * ProjectMeshDerivatives for what is exact.
  *
- * Parameters: Modes (default: none), and those of DRRImageFilter, with Method Projection.
+ * Parameters: Modes (default: none), and those of DRRImageFilter.
  *
- * Refused: what DRRImageFilter refuses; a second view; the method Walk; a shape mode that has not one displacement a
+ * Refused: what DRRImageFilter refuses; a second view; a shape mode that has not one displacement a
  * point, a density mode that has not one number a coefficient, and numbers that are not finite. */
 template <typename TMesh = DensityMesh<double>, typename TOutputImage = itk::Image<float, 3>>
 class DRRDerivativeImageFilter : public DRRImageFilter<TMesh, TOutputImage>
@@ -35,11 +35,7 @@ public:
   /** Runs the filter again, whatever the modes were. */
   void
   SetModes(RadiographModes modes);
-  const RadiographModes &
-  GetModes() const
-  {
-    return m_Modes;
-  }
+  itkGetConstReferenceMacro(Modes, RadiographModes);
 
   TOutputImage *
   GetDerivative(unsigned int mode)

@@ -35,10 +35,6 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::VerifyPreconditions() const
   {
     itkExceptionMacro("There is a second view: use a filter for each.");
   }
-  if (this->GetMethod() != DRRMethod::Projection)
-  {
-    itkExceptionMacro("Method is " << ParameterText(this->GetMethod()) << ": derivatives need projection.");
-  }
 }
 
 template <typename TMesh, typename TOutputImage>

@@ -44,7 +44,7 @@ CopyPoints(const TMesh & mesh)
  * The ProjectionModel is kept from one update to the next while the mesh and the parameters are the same:
  * about 200 bytes a tetrahedron of degree 3; further views then take some three quarters of the time.
  *
- * \sa MeshRadiograph for the methods, VoxelDRRImageFilter for a CT */
+ * \sa MeshRadiograph for the method, VoxelDRRImageFilter for a CT */
 template <typename TMesh = DensityMesh<double>, typename TOutputImage = itk::Image<float, 3>>
 class DRRImageFilter : public RadiographSource<TOutputImage>
 {
@@ -72,10 +72,7 @@ public:
   }
 
   using Superclass::SetParameters;
-  BONE_FILTER_PARAMETERS(DRRParameters, BONE_DRR_PARAMETERS)
-
-  /** Mean number of tetrahedra on the rays that meet any, known after an update with the method Walk, else 0. */
-  itkGetConstMacro(MeanCellsPassed, double);
+  BONE_PLAIN_FILTER_PARAMETERS(DRRParameters, BONE_REGION_RANGE_PARAMETERS)
 
 protected:
   DRRImageFilter();
@@ -91,17 +88,11 @@ protected:
   GetVerifiedPoints() const;
 
   void
-  VerifyPreconditions() const override;
-  void
   ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
                    const Execution &                       execution,
                    const std::vector<float *> &            integrals) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  double m_MeanCellsPassed{ 0.0 };
-
   /** The model that GetModel keeps, and the mesh and conversion of which it was made. */
   struct Kept
   {

@@ -15,14 +15,6 @@ DRRImageFilter<TMesh, TOutputImage>::DRRImageFilter()
 }
 
 template <typename TMesh, typename TOutputImage>
-void
-DRRImageFilter<TMesh, TOutputImage>::VerifyPreconditions() const
-{
-  Superclass::VerifyPreconditions();
-  this->VerifyParameters();
-}
-
-template <typename TMesh, typename TOutputImage>
 MeshRadiographParameters
 DRRImageFilter<TMesh, TOutputImage>::GetMeshRadiographParameters() const
 {
@@ -71,39 +63,7 @@ DRRImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vector<XRayGeom
                                                       const Execution &                       execution,
                                                       const std::vector<float *> &            integrals)
 {
-  m_MeanCellsPassed = 0.0;
-  if (m_Parameters.method == DRRMethod::Projection)
-  {
-    ProjectMesh(GetModel(execution.Silent()), views, execution, integrals);
-    return;
-  }
-  const TMesh *                  mesh = this->GetInput();
-  const std::vector<Vector3>     points = GetVerifiedPoints();
-  const MeshRadiographParameters parameters = GetMeshRadiographParameters();
-  const auto                     count = static_cast<double>(views.size());
-  double                         sum = 0.0;
-  std::size_t                    hit = 0;
-  for (std::size_t i = 0; i < views.size(); ++i)
-  {
-    std::vector<std::int32_t> passed(static_cast<std::size_t>(views[i].size[0]) * views[i].size[1]);
-    const Execution           part = execution.Part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
-    WalkMesh(points, mesh->GetCells(), views[i], parameters, part, integrals[i], passed.data());
-    for (std::int32_t cells : passed)
-    {
-      sum += cells;
-      hit += cells > 0 ? 1 : 0;
-    }
-  }
-  m_MeanCellsPassed = hit > 0 ? sum / static_cast<double>(hit) : 0.0;
-}
-
-template <typename TMesh, typename TOutputImage>
-void
-DRRImageFilter<TMesh, TOutputImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
-{
-  Superclass::PrintSelf(os, indent);
-  PrintParameters(os, indent, m_Parameters);
-  os << indent << "MeanCellsPassed: " << m_MeanCellsPassed << '\n';
+  ProjectMesh(GetModel(execution.Silent()), views, execution, integrals);
 }
 } // namespace bone
 

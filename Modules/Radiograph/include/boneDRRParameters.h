@@ -10,19 +10,6 @@
 
 namespace bone
 {
-/** How DRRImageFilter integrates; both give the same image within about 1e-6 of its largest value. */
-enum class DRRMethod : int
-{
-  Projection = 0, ///< tetrahedra projected onto the detector: fast
-  Walk = 1        ///< rays walked from face neighbour to face neighbour (paper 5): slow, in double precision
-};
-
-template <>
-struct ParameterChoices<DRRMethod>
-{
-  static constexpr std::array<const char *, 2> names = { "projection", "walk" };
-};
-
 // clang-format off
 /** The tetrahedra that count: all where the mesh has no regions. */
 #define BONE_REGION_RANGE_PARAMETERS(value, flag) \
@@ -30,11 +17,6 @@ struct ParameterChoices<DRRMethod>
     "minimum-region", "Lowest region of the mesh that counts") \
   value(int, maximumRegion, MaximumRegion, std::numeric_limits<int>::max(), ParameterRange::Any(), "", \
     "maximum-region", "Highest region of the mesh that counts")
-
-#define BONE_DRR_PARAMETERS(value, flag) \
-  value(DRRMethod, method, Method, DRRMethod::Projection, ParameterRange::Any(), "", "method", \
-    "projection, or walk: each ray from tetrahedron to tetrahedron, slowly, and count how many it passes") \
-  BONE_REGION_RANGE_PARAMETERS(value, flag)
 
 #define BONE_DRR_ADJOINT_PARAMETERS(value, flag) \
   BONE_REGION_RANGE_PARAMETERS(value, flag) \
@@ -48,7 +30,7 @@ struct ParameterChoices<DRRMethod>
 // clang-format on
 
 /** Parameters of DRRImageFilter beside those of RadiographSource. */
-BONE_PARAMETER_STRUCT(DRRParameters, BONE_DRR_PARAMETERS);
+BONE_PARAMETER_STRUCT(DRRParameters, BONE_REGION_RANGE_PARAMETERS);
 
 /** Parameters of DRRAdjointFilter. */
 BONE_PARAMETER_STRUCT(DRRAdjointParameters, BONE_DRR_ADJOINT_PARAMETERS);

@@ -59,18 +59,12 @@ public:
   itkNewMacro(Self);
   itkTypeMacro(IntensityImageFilter, UnaryFunctorImageFilter);
 
-  BONE_FILTER_PARAMETERS(IntensityParameters, BONE_INTENSITY_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(IntensityParameters, BONE_INTENSITY_PARAMETERS)
 
 protected:
   IntensityImageFilter() = default;
   ~IntensityImageFilter() override = default;
 
-  void
-  VerifyPreconditions() const override
-  {
-    Superclass::VerifyPreconditions();
-    this->VerifyParameters();
-  }
   void
   BeforeThreadedGenerateData() override
   {
@@ -85,13 +79,6 @@ protected:
     {
       to.Set(this->GetFunctor()(from.Get()));
     }
-  }
-
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override
-  {
-    Superclass::PrintSelf(os, indent);
-    PrintParameters(os, indent, m_Parameters);
   }
 };
 } // namespace bone

@@ -64,20 +64,6 @@ ProjectMesh(const std::vector<Vector3> &     points,
   ProjectMesh(
     points, cells, std::vector<XRayGeometry::View>{ view }, parameters, execution, std::vector<float *>{ image });
 }
-
-/** \brief Walks each ray from face neighbour to face neighbour, in double precision.
- *
- * A ray enters wherever it meets a boundary face from outside (again after leaving a non-convex bone), or starts in the
- * cell of the source. Needs `cells.neighbors`. `cellsPassed` (rows x columns, or null) receives the number of
- * tetrahedra met on each ray, of any region. */
-void
-WalkMesh(const std::vector<Vector3> &     points,
-         const MeshCells &                cells,
-         const XRayGeometry::View &       view,
-         const MeshRadiographParameters & parameters,
-         const Execution &                execution,
-         float *                          image,
-         std::int32_t *                   cellsPassed);
 /** \} */
 } // namespace bone
 

@@ -39,18 +39,11 @@ public:
   using RegionType = typename TImage::RegionType;
   using PixelType = typename TImage::PixelType;
 
-  BONE_FILTER_PARAMETERS(NoiseParameters, BONE_NOISE_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(NoiseParameters, BONE_NOISE_PARAMETERS)
 
 protected:
   NoiseImageFilter() { this->DynamicMultiThreadingOn(); }
   ~NoiseImageFilter() override = default;
-
-  void
-  VerifyPreconditions() const override
-  {
-    Superclass::VerifyPreconditions();
-    this->VerifyParameters();
-  }
 
   void
   DynamicThreadedGenerateData(const RegionType & region) override
@@ -67,13 +60,6 @@ protected:
       }
       to.Set(static_cast<PixelType>(Draw(static_cast<double>(from.Get()), place)));
     }
-  }
-
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override
-  {
-    Superclass::PrintSelf(os, indent);
-    PrintParameters(os, indent, m_Parameters);
   }
 
 private:

@@ -45,16 +45,8 @@ public:
   using OutputPixelType = typename TOutputImage::PixelType;
   static_assert(TOutputImage::ImageDimension == 3, "A radiograph lies in space: it needs a three-dimensional image.");
 
-  virtual void
-  SetGeometry(const XRayGeometry * geometry)
-  {
-    this->itk::ProcessObject::SetInput("Geometry", const_cast<XRayGeometry *>(geometry));
-  }
-  const XRayGeometry *
-  GetGeometry() const
-  {
-    return itkDynamicCastInDebugMode<const XRayGeometry *>(this->itk::ProcessObject::GetInput("Geometry"));
-  }
+  itkSetInputMacro(Geometry, XRayGeometry);
+  itkGetInputMacro(Geometry, XRayGeometry);
 
   /** View `index`, whose radiograph is GetOutput(index); views 0..index must be set. */
   virtual void

@@ -54,34 +54,22 @@ public:
   {
     return itkDynamicCastInDebugMode<const TInputImage *>(this->GetPrimaryInput());
   }
-  virtual void
-  SetMask(const TMaskImage * mask)
-  {
-    this->itk::ProcessObject::SetInput("Mask", const_cast<TMaskImage *>(mask));
-  }
-  const TMaskImage *
-  GetMask() const
-  {
-    return itkDynamicCastInDebugMode<const TMaskImage *>(this->itk::ProcessObject::GetInput("Mask"));
-  }
+  itkSetInputMacro(Mask, TMaskImage);
+  itkGetInputMacro(Mask, TMaskImage);
 
   using Superclass::SetParameters;
-  BONE_FILTER_PARAMETERS(VoxelDRRParameters, BONE_VOXEL_DRR_PARAMETERS)
+  BONE_PLAIN_FILTER_PARAMETERS(VoxelDRRParameters, BONE_VOXEL_DRR_PARAMETERS)
 
 protected:
   VoxelDRRImageFilter();
   ~VoxelDRRImageFilter() override = default;
 
   void
-  VerifyPreconditions() const override;
-  void
   VerifyInputInformation() const override;
   void
   ComputeIntegrals(const std::vector<XRayGeometry::View> & views,
                    const Execution &                       execution,
                    const std::vector<float *> &            integrals) override;
-  void
-  PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
   using RegionType = typename TInputImage::RegionType;

@@ -21,14 +21,6 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VoxelDRRImageFilter(
 
 template <typename TInputImage, typename TOutputImage, typename TMaskImage>
 void
-VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyPreconditions() const
-{
-  Superclass::VerifyPreconditions();
-  this->VerifyParameters();
-}
-
-template <typename TInputImage, typename TOutputImage, typename TMaskImage>
-void
 VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::VerifyInputInformation() const
 {
   Superclass::VerifyInputInformation();
@@ -152,14 +144,6 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::ComputeIntegrals(
     ProjectVoxels(
       grid, views[i], main.Part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count), integrals[i]);
   }
-}
-
-template <typename TInputImage, typename TOutputImage, typename TMaskImage>
-void
-VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::PrintSelf(std::ostream & os, itk::Indent indent) const
-{
-  Superclass::PrintSelf(os, indent);
-  PrintParameters(os, indent, m_Parameters);
 }
 } // namespace bone
 

@@ -155,9 +155,6 @@ TEST(DRRDerivativeImageFilter, RefusesModesThatDoNotFit)
   filter->SetModes(modes);
   ExpectRefusal(filter.GetPointer(), "Density mode 0");
   filter->SetModes({});
-  filter->SetMethod(DRRMethod::Walk);
-  ExpectRefusal(filter.GetPointer(), "Method is walk");
-  filter->SetMethod(DRRMethod::Projection);
   filter->SetGeometry(1, Look(front));
   ExpectRefusal(filter.GetPointer(), "second view");
 }

@@ -120,19 +120,14 @@ TEST(DRRImageFilter, MakesSeveralViewsInOneRun)
   auto       other = XRayGeometry::New();
   other->SetView(XRayGeometry::Framing(lower, upper, Vector3::UnitX(), Vector3::UnitZ(), 400, 600, 45));
   both->SetGeometry(1, other);
-  for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
-  {
-    both->SetMethod(method);
-    one->SetMethod(method);
-    both->GetOutput(1)->Update();
-    one->SetGeometry(MakeGeometry());
-    one->Update();
-    EXPECT_EQ(Pixels(both->GetOutput(0)), Pixels(one->GetOutput()));
-    one->SetGeometry(other);
-    one->Update();
-    EXPECT_EQ(Pixels(both->GetOutput(1)), Pixels(one->GetOutput()));
-    EXPECT_EQ(both->GetOutput(1)->GetOrigin(), one->GetOutput()->GetOrigin());
-  }
+  both->GetOutput(1)->Update();
+  one->SetGeometry(MakeGeometry());
+  one->Update();
+  EXPECT_EQ(Pixels(both->GetOutput(0)), Pixels(one->GetOutput()));
+  one->SetGeometry(other);
+  one->Update();
+  EXPECT_EQ(Pixels(both->GetOutput(1)), Pixels(one->GetOutput()));
+  EXPECT_EQ(both->GetOutput(1)->GetOrigin(), one->GetOutput()->GetOrigin());
   Counter counter(both);
   both->Update();
   both->GetOutput(1)->Update();
@@ -148,17 +143,12 @@ TEST(DRRImageFilter, MakesSeveralViewsInOneRun)
 
 TEST(DRRImageFilter, HasTheSameOutputForAnyNumberOfThreads)
 {
-  for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
-  {
-    const auto one = MakeFilter(), many = MakeFilter();
-    one->SetMethod(method);
-    many->SetMethod(method);
-    one->SetNumberOfWorkUnits(1);
-    many->SetNumberOfWorkUnits(7);
-    one->Update();
-    many->Update();
-    EXPECT_EQ(Pixels(one->GetOutput()), Pixels(many->GetOutput()));
-  }
+  const auto one = MakeFilter(), many = MakeFilter();
+  one->SetNumberOfWorkUnits(1);
+  many->SetNumberOfWorkUnits(7);
+  one->Update();
+  many->Update();
+  EXPECT_EQ(Pixels(one->GetOutput()), Pixels(many->GetOutput()));
 }
 
 TEST(DRRImageFilter, RunsAgainOnlyAfterAChange)
@@ -170,10 +160,10 @@ TEST(DRRImageFilter, RunsAgainOnlyAfterAChange)
   filter->GetOutput()->Update();
   EXPECT_EQ(counter.runs, 1);
 
-  filter->SetMethod(DRRMethod::Projection);
+  filter->SetMinimumRegion(filter->GetMinimumRegion());
   filter->Update();
   EXPECT_EQ(counter.runs, 1);
-  filter->SetMethod(DRRMethod::Walk);
+  filter->SetMinimumRegion(0);
   filter->Update();
   EXPECT_EQ(counter.runs, 2);
 }
@@ -258,17 +248,6 @@ TEST(DRRImageFilter, WaterScaledIsThatOfWaterPlusTheScaledDensity)
   }
 }
 
-TEST(DRRImageFilter, CountsTheTetrahedraOfTheWalk)
-{
-  const auto filter = MakeFilter();
-  filter->Update();
-  EXPECT_EQ(filter->GetMeanCellsPassed(), 0);
-  filter->SetMethod(DRRMethod::Walk);
-  filter->Update();
-  EXPECT_GT(filter->GetMeanCellsPassed(), 3);
-  EXPECT_LT(filter->GetMeanCellsPassed(), 30);
-}
-
 TEST(DRRImageFilter, TakesAMeshOfFloatsAndMakesAnImageOfDoubles)
 {
   const auto arrays = BoxArrays();
@@ -323,28 +302,24 @@ TEST(DRRImageFilter, RefusesWhatItCannotProject)
 
 TEST(DRRImageFilter, ReportsProgressThatDoesNotFallAndStopsOnAbort)
 {
-  for (auto method : { DRRMethod::Projection, DRRMethod::Walk })
-  {
-    const auto filter = MakeFilter();
-    filter->SetGeometry(1, MakeGeometry());
-    filter->SetMethod(method);
-    filter->SetNumberOfWorkUnits(1); // other threads do not report
-    const test::ProgressWatch watch(filter);
-    filter->Update();
-    EXPECT_FALSE(watch.falls);
-    EXPECT_EQ(watch.last, 1.0f);
-    const auto before = Pixels(filter->GetOutput());
-    filter->Modified();
-    test::ExpectUsableAfterAbort(filter);
-    EXPECT_EQ(Pixels(filter->GetOutput()), before);
-  }
+  const auto filter = MakeFilter();
+  filter->SetGeometry(1, MakeGeometry());
+  filter->SetNumberOfWorkUnits(1); // other threads do not report
+  const test::ProgressWatch watch(filter);
+  filter->Update();
+  EXPECT_FALSE(watch.falls);
+  EXPECT_EQ(watch.last, 1.0f);
+  const auto before = Pixels(filter->GetOutput());
+  filter->Modified();
+  test::ExpectUsableAfterAbort(filter);
+  EXPECT_EQ(Pixels(filter->GetOutput()), before);
 }
 
 TEST(DRRImageFilter, PrintsItsParameters)
 {
   std::ostringstream text;
   MakeFilter()->Print(text);
-  for (const char * name : { "Method: projection", "HUToAttenuation: none", "MinimumRegion" })
+  for (const char * name : { "HUToAttenuation: none", "MinimumRegion" })
   {
     EXPECT_THAT(text.str(), testing::HasSubstr(name));
   }

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneMeshRadiograph.h"
 
+#include "boneMeshWalk.h"
 #include "boneProjectionModel.h"
 #include "boneRadiographTestMeshes.h"
 #include "boneRayFrame.h"

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneMeshDerivatives.h"
 
+#include "boneMeshWalk.h"
 #include "boneProjectionModel.h"
 #include "boneRadiographTestMeshes.h"
 #include "boneVoxelRadiograph.h"

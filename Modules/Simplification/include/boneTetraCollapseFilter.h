@@ -91,11 +91,7 @@ public:
     std::size_t                                 collapses;
     std::array<std::size_t, MeshOperationCount> refused;
   };
-  const std::vector<LevelReport> &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, std::vector<LevelReport>);
 
   using Superclass::MakeOutput;
   itk::DataObject::Pointer

@@ -71,11 +71,7 @@ public:
   SetCorrespondence(std::shared_ptr<const ContourCorrespondence> correspondence);
 
   /** What the last update met. */
-  const TilingReport &
-  GetReport() const
-  {
-    return m_Report;
-  }
+  itkGetConstReferenceMacro(Report, TilingReport);
 
 protected:
   ContourTilingMeshSource();

@@ -61,11 +61,7 @@ public:
 
   using SliceContainer = std::vector<ContourSlice>;
 
-  const SliceContainer &
-  GetSlices() const
-  {
-    return m_Slices;
-  }
+  itkGetConstReferenceMacro(Slices, SliceContainer);
   /** Replaces all slices. */
   void
   SetSlices(SliceContainer slices);
@@ -73,21 +69,9 @@ public:
   /** Sets the in-plane axes, made orthonormal; N = U x V. Throws where they are parallel or not finite. */
   void
   SetFrame(const Vector3 & u, const Vector3 & v);
-  const Vector3 &
-  GetU() const
-  {
-    return m_U;
-  }
-  const Vector3 &
-  GetV() const
-  {
-    return m_V;
-  }
-  const Vector3 &
-  GetNormal() const
-  {
-    return m_Normal;
-  }
+  itkGetConstReferenceMacro(U, Vector3);
+  itkGetConstReferenceMacro(V, Vector3);
+  itkGetConstReferenceMacro(Normal, Vector3);
 
   /** True where the bone goes on beyond the first (last) slice because the image ends there. */
   itkSetMacro(OpenStart, bool);

@@ -47,11 +47,7 @@ public:
    * and perpendicular within 1e-6, or the source lies in (the beam runs along) the detector's plane. */
   void
   SetView(const View & view);
-  const View &
-  GetView() const
-  {
-    return m_View;
-  }
+  itkGetConstReferenceMacro(View, View);
 
   /** Centre of pixel (column, row), mm; fractional pixels allowed. */
   Vector3

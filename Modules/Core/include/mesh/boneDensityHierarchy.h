@@ -51,11 +51,7 @@ public:
     std::string stopReason;
   };
 
-  const std::vector<Level> &
-  GetLevels() const
-  {
-    return m_Levels;
-  }
+  itkGetConstReferenceMacro(Levels, std::vector<Level>);
   void
   SetLevels(std::vector<Level> levels)
   {

@@ -46,11 +46,7 @@ public:
   GetArrays() const;
 
   /** All but the points, without a copy. */
-  const MeshCells &
-  GetCells() const
-  {
-    return m_Cells;
-  }
+  itkGetConstReferenceMacro(Cells, MeshCells);
 
   IdType
   GetNumberOfTetrahedra() const

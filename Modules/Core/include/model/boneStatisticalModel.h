@@ -62,11 +62,7 @@ public:
   /** Throws itk::ExceptionObject where lengths do not match. */
   void
   SetContent(StatisticalModelContent content);
-  const StatisticalModelContent &
-  GetContent() const
-  {
-    return m_Content;
-  }
+  itkGetConstReferenceMacro(Content, StatisticalModelContent);
   bool
   HasDensity() const
   {

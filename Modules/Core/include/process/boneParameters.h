@@ -295,4 +295,21 @@ protected:                                                                      
                                                                                                                        \
 public:
 
+/** BONE_FILTER_PARAMETERS of a filter that checks and prints nothing else: VerifyPreconditions and PrintSelf too. */
+#define BONE_PLAIN_FILTER_PARAMETERS(Struct, TABLE)                                                                    \
+  BONE_FILTER_PARAMETERS(Struct, TABLE)                                                                                \
+protected:                                                                                                             \
+  void VerifyPreconditions() const override                                                                            \
+  {                                                                                                                    \
+    Superclass::VerifyPreconditions();                                                                                 \
+    this->VerifyParameters();                                                                                          \
+  }                                                                                                                    \
+  void PrintSelf(std::ostream & os, itk::Indent indent) const override                                                 \
+  {                                                                                                                    \
+    Superclass::PrintSelf(os, indent);                                                                                 \
+    ::bone::PrintParameters(os, indent, m_Parameters);                                                                 \
+  }                                                                                                                    \
+                                                                                                                       \
+public:
+
 #endif

@@ -1,7 +1,8 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneMeshRadiograph.h"
+#include "boneMeshWalk.h"
+
 #include "boneRayCell.h"
 
 #include <algorithm>
