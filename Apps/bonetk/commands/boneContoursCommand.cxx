@@ -61,13 +61,7 @@ void
 SetGivenResolution(const Options & options, const BuildInput & input, BuildPipeline & pipeline)
 {
   const BuildPlanParameters & plan = options.parameters.plan;
-  BuildParameters             stages = options.parameters;
-  stages.contours.label = plan.label;
-  stages.contours.axis = plan.axis;
-  pipeline.SetParameters(stages);
-  pipeline.SetImage(input.ct);
-  pipeline.SetLabelImage(input.labels);
-  pipeline.SetInitialContours(input.contours);
+  SetBuild(input, options.parameters, pipeline);
   const double spacing = plan.contourSpacing > 0.0 ? plan.contourSpacing : ContourResampleParameters().maximumSpacing;
   if (plan.sliceStep > 0.0)
   {
@@ -179,8 +173,10 @@ AddContoursCommand(CLI::App & app, Action & action)
   command->get_option("--follow")->needs("--labels");
   command->get_option("--tetrahedra")
     ->description(
-      "Slices and spacings such that tiling and quality stage give about so many tetrahedra, as `build` finds them; "
-      "default: every slice, or --slice-step, and --contour-spacing, 4 mm");
+      std::string(
+        "Slices and spacings such that tiling and quality stage give about so many tetrahedra, as `build` finds them; "
+        "default: every slice, or --slice-step, and --contour-spacing, ") +
+      ParameterText(ContourResampleParameters().maximumSpacing) + " mm");
   command->add_option("--write-all-slices",
                       options->allSlices,
                       "Where to write the contours of every slice too (.vtp), before slices are chosen and contours "

@@ -36,6 +36,10 @@ FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan
 std::vector<IdType>
 CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest);
 
+/** Sets input and parameters on the pipeline, label, axis and distance bound of the stages as the plan has them. */
+void
+SetBuild(const BuildInput & input, const BuildParameters & parameters, BuildPipeline & pipeline);
+
 /** \brief Sets input and parameters on the pipeline and finds the resolution.
  *
  * Slice step and contour spacing are those of the plan where it has them, else such that the mesh has about the number

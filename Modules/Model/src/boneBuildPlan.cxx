@@ -62,6 +62,19 @@ CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest)
   return counts;
 }
 
+void
+SetBuild(const BuildInput & input, const BuildParameters & parameters, BuildPipeline & pipeline)
+{
+  BuildParameters stages = parameters;
+  stages.contours.label = stages.quality.label = parameters.plan.label;
+  stages.contours.axis = parameters.plan.axis;
+  stages.quality.distanceBound = FindDistanceBound(*input.ct, parameters.plan);
+  pipeline.SetParameters(stages);
+  pipeline.SetImage(input.ct);
+  pipeline.SetLabelImage(input.labels);
+  pipeline.SetInitialContours(input.contours);
+}
+
 Resolution
 PlanBuild(const BuildInput &                                      input,
           const BuildParameters &                                 parameters,
@@ -69,14 +82,7 @@ PlanBuild(const BuildInput &                                      input,
           const std::function<void(const Resolution &, IdType)> & tried)
 {
   const BuildPlanParameters & plan = parameters.plan;
-  BuildParameters             stages = parameters;
-  stages.contours.label = stages.quality.label = plan.label;
-  stages.contours.axis = plan.axis;
-  stages.quality.distanceBound = FindDistanceBound(*input.ct, plan);
-  pipeline.SetParameters(stages);
-  pipeline.SetImage(input.ct);
-  pipeline.SetLabelImage(input.labels);
-  pipeline.SetInitialContours(input.contours);
+  SetBuild(input, parameters, pipeline);
   double surface = input.surface;
   if (input.labels.IsNull())
   {
