@@ -2,6 +2,8 @@
 # GoogleTest for the test programs (position-independent executables, which GCC does not let share the first).
 # Nine tenths of what a source of BoneTK is compiled from are ITK's image, Eigen and the standard library.
 option(BONETK_PRECOMPILE "Precompile the headers that most sources include" ON)
+# A library's sources are compiled eight at once: what they instantiate alike is instantiated once.
+option(BONETK_UNITY_BUILD "Compile several sources of a library or program at once" ON)
 
 set(BONETK_PRECOMPILED_HEADERS
     <algorithm> <array> <cmath> <cstddef> <functional> <limits> <map> <memory> <ostream> <sstream> <stdexcept> <string>

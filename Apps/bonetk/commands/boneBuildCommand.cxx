@@ -22,7 +22,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct BuildOptions
 {
   std::string        ct;
   BoneOptions        bone;
@@ -34,7 +34,7 @@ struct Options
 
 /** What the command line names; without a CT what the report names that the parameters come from. */
 BuildFiles
-FilesOf(const Options & options)
+FilesOf(const BuildOptions & options)
 {
   if (options.ct.empty() && options.files.image.empty())
   {
@@ -114,7 +114,7 @@ private:
 };
 
 void
-Run(const Options & options, Session & session)
+RunBuild(const BuildOptions & options, Session & session)
 {
   if (options.failure)
   {
@@ -168,7 +168,7 @@ Run(const Options & options, Session & session)
 void
 AddBuildCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<BuildOptions>();
   auto * command =
     app.add_subcommand("build", "The whole job: from a CT to a hierarchy of density models, with a report");
   // First, as options that follow override what it reads.
@@ -195,6 +195,6 @@ AddBuildCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->parameters.plan);
   AddParameterOptions(command, options->parameters.fit, { "degree", "continuous" });
   AddAxisOption(command, options->parameters.plan.axis);
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunBuild(*options, session); }; });
 }
 } // namespace bone

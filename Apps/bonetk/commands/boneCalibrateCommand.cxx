@@ -19,9 +19,7 @@ namespace bone
 {
 namespace
 {
-using Json = nlohmann::json;
-
-struct Options
+struct CalibrateOptions
 {
   std::string                  mesh;
   DensityCalibrationParameters parameters;
@@ -33,14 +31,14 @@ struct Options
 };
 
 Vector3
-Point(const Json & json)
+Point(const nlohmann::json & json)
 {
   const auto values = json.get<std::array<double, 3>>();
   return { values[0], values[1], values[2] };
 }
 
 DensityReference
-ReadReference(const Json & json)
+ReadReference(const nlohmann::json & json)
 {
   DensityReference reference;
   reference.name = json.at("name").get<std::string>();
@@ -72,8 +70,8 @@ ReadReferences(const std::string & path)
     {
       throw std::runtime_error("cannot be read");
     }
-    const Json json = Json::parse(file);
-    for (const Json & item : json.at("references"))
+    const nlohmann::json json = nlohmann::json::parse(file);
+    for (const nlohmann::json & item : json.at("references"))
     {
       references.push_back(ReadReference(item));
     }
@@ -87,7 +85,7 @@ ReadReferences(const std::string & path)
 
 /** Gives the filter the references and the images that these are measured in. */
 void
-UseReferences(const Options & options, DensityQuantity to, DensityCalibrationFilter<CTImage> & filter)
+UseReferences(const CalibrateOptions & options, DensityQuantity to, DensityCalibrationFilter<CTImage> & filter)
 {
   const auto references = ReadReferences(options.references);
   for (const DensityReference & reference : references)
@@ -146,7 +144,7 @@ Report(const DensityCalibrationFilter<CTImage> & filter, Session & session)
 }
 
 void
-Run(const Options & options, Session & session)
+RunCalibrate(const CalibrateOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
   const auto & [line, to] = options.parameters;
@@ -178,7 +176,7 @@ Run(const Options & options, Session & session)
 void
 AddCalibrateCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<CalibrateOptions>();
   auto * command = app.add_subcommand("calibrate", "Turn Hounsfield units into mineral, ash or apparent density");
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
   AddParameterOptions(command, options->parameters);
@@ -197,6 +195,6 @@ AddCalibrateCommand(CLI::App & app, Action & action)
                  "(ash to apparent)")
     ->check(CLI::IsMember({ "les1994", "keyak2005", "schileo2008" }).description(""));
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunCalibrate(*options, session); }; });
 }
 } // namespace bone

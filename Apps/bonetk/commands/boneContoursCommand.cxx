@@ -17,7 +17,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct ContoursOptions
 {
   std::string              ct;
   BoneOptions              bone;
@@ -40,7 +40,7 @@ IsContourFile(const std::string & path)
 }
 
 void
-Verify(const Options & options)
+Verify(const ContoursOptions & options)
 {
   options.bone.Verify();
   for (const std::string & output : options.outputs)
@@ -58,7 +58,7 @@ Verify(const Options & options)
 
 /** Sets the spacings of a build for slices and contours that are given, or of every slice and the default spacing. */
 void
-SetGivenResolution(const Options & options, const BuildInput & input, BuildPipeline & pipeline)
+SetGivenResolution(const ContoursOptions & options, const BuildInput & input, BuildPipeline & pipeline)
 {
   const BuildPlanParameters & plan = options.parameters.plan;
   SetBuild(input, options.parameters, pipeline);
@@ -85,7 +85,7 @@ SetGivenResolution(const Options & options, const BuildInput & input, BuildPipel
 }
 
 void
-Run(const Options & options, Session & session)
+RunContours(const ContoursOptions & options, Session & session)
 {
   Verify(options);
   const BuildPlanParameters & plan = options.parameters.plan;
@@ -141,7 +141,7 @@ Run(const Options & options, Session & session)
 void
 AddContoursCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<ContoursOptions>();
   auto * command = app.add_subcommand("contours", "Contours of a bone on every slice, by layer, with medial axes");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
   options->bone.AddTo(command);
@@ -195,7 +195,7 @@ AddContoursCommand(CLI::App & app, Action & action)
     {
       options->parameters.resample.minimumLayerDistance = options->parameters.contours.minimumLayerDistance;
     }
-    action = [options](Session & session) { Run(*options, session); };
+    action = [options](Session & session) { RunContours(*options, session); };
   });
 }
 } // namespace bone

@@ -10,7 +10,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct CropOptions
 {
   std::string         ct;
   std::string         labels;
@@ -20,7 +20,7 @@ struct Options
 };
 
 void
-Run(const Options & options, Session &)
+RunCrop(const CropOptions & options, Session &)
 {
   const BuildInput input = CropToBone(ReadCT(options.ct), ReadLabels(options.labels), nullptr, options.plan);
   WriteImage(input.ct, options.output);
@@ -34,13 +34,13 @@ Run(const Options & options, Session &)
 void
 AddCropCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<CropOptions>();
   auto * command = app.add_subcommand("crop", "Cut a CT and its label map down to one bone, as build does");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
   command->add_option("--labels", options->labels, "Label map on the CT's grid")->required();
   AddParameterOptions(command, options->plan, { "label", "cropMargin" });
   command->add_option("-o,--output", options->output, "CT to write; .mha and .nrrd keep its place exactly")->required();
   command->add_option("--write-labels", options->labelsOutput, "Label map to write");
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunCrop(*options, session); }; });
 }
 } // namespace bone

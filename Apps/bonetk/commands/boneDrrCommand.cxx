@@ -18,7 +18,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct DrrOptions
 {
   std::string input;
   std::string geometry;
@@ -36,7 +36,7 @@ struct Options
 using Radiograph = CTImage;
 
 itk::SmartPointer<RadiographSource<Radiograph>>
-MakeSource(const Options & options)
+MakeSource(const DrrOptions & options)
 {
   const std::string extension = ".vtu";
   const std::size_t length = options.input.size();
@@ -84,7 +84,7 @@ ViewPath(const std::string & path, std::size_t index, std::size_t count)
 
 /** The radiograph, or what a detector sees of it where an intensity was given. */
 Radiograph::Pointer
-Detect(const Options & options, Radiograph * integrals, std::size_t view)
+Detect(const DrrOptions & options, Radiograph * integrals, std::size_t view)
 {
   if (!(options.intensity > 0))
   {
@@ -102,7 +102,7 @@ Detect(const Options & options, Radiograph * integrals, std::size_t view)
 }
 
 void
-SaveGeometry(const Options & options, const std::vector<XRayGeometry::Pointer> & views, Session & session)
+SaveGeometry(const DrrOptions & options, const std::vector<XRayGeometry::Pointer> & views, Session & session)
 {
   if (options.convention == "rtk")
   {
@@ -122,7 +122,7 @@ SaveGeometry(const Options & options, const std::vector<XRayGeometry::Pointer> &
 }
 
 void
-Run(const Options & options, Session & session)
+RunDrr(const DrrOptions & options, Session & session)
 {
   if (options.intensity > 0 && !options.attenuation && !options.bilinear)
   {
@@ -157,7 +157,7 @@ Run(const Options & options, Session & session)
 void
 AddDrrCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<DrrOptions>();
   auto * command = app.add_subcommand("drr", "Digitally reconstructed radiograph of a density mesh or a voxel image");
   command->add_option("input", options->input, "Density mesh (.vtu), or a CT")->required();
   command->add_option("--geometry", options->geometry, "Views (.json); several write NAME_V1, NAME_V2, ...")
@@ -186,6 +186,6 @@ AddDrrCommand(CLI::App & app, Action & action)
     ->check(CLI::IsMember({ "view", "matrix", "plastimatch", "rtk" }).description(""))
     ->needs("--save-geometry");
   command->add_option("-o,--output", options->output, "Radiograph to write (.mha, .nii.gz, .nrrd, ...)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunDrr(*options, session); }; });
 }
 } // namespace bone

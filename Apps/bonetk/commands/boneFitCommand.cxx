@@ -22,7 +22,7 @@ namespace
 using Fit = DensityFitFilter<CTImage>;
 using Json = nlohmann::ordered_json;
 
-struct Options
+struct FitOptions
 {
   std::string          ct;
   std::string          mesh;
@@ -95,7 +95,7 @@ DescribeFit(Fit & fit, const CTImage & ct)
 }
 
 void
-Run(const Options & options, Session & session)
+RunFit(const FitOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
   const auto ct = ReadCT(options.ct);
@@ -127,7 +127,7 @@ Run(const Options & options, Session & session)
 void
 AddFitCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<FitOptions>();
   auto * command = app.add_subcommand("fit", "Fit a Bernstein polynomial to the CT in every tetrahedron");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
   command->add_option("mesh", options->mesh, "Mesh (.vtu); a density it holds is replaced")->required();
@@ -136,6 +136,6 @@ AddFitCommand(CLI::App & app, Action & action)
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
   command->add_option("--report", options->report, "Figures of the fit, with the error at held-out voxels (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunFit(*options, session); }; });
 }
 } // namespace bone

@@ -14,7 +14,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct MeshOptions
 {
   std::string      contours;
   std::string      ct;
@@ -25,7 +25,7 @@ struct Options
 };
 
 void
-Run(const Options & options, Session & session)
+RunMesh(const MeshOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
   if (!options.correspondenceOutput.empty())
@@ -68,7 +68,7 @@ Run(const Options & options, Session & session)
 void
 AddMeshCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<MeshOptions>();
   auto * command = app.add_subcommand("mesh", "Tile contours into a layered tetrahedral mesh");
   command->add_option("contours", options->contours, "Contours (.vtp)")->required();
   command->add_option("--ct", options->ct, "CT whose density the metric follows");
@@ -80,6 +80,6 @@ AddMeshCommand(CLI::App & app, Action & action)
                       options->correspondenceOutput,
                       "Where to write which contours were taken to belong together (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunMesh(*options, session); }; });
 }
 } // namespace bone

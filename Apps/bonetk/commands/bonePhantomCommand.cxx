@@ -14,7 +14,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct PhantomOptions
 {
   std::string            bone{ "femur" };
   std::string            surface;
@@ -27,7 +27,7 @@ struct Options
 };
 
 PhantomModel::Pointer
-MakeModel(const Options & options)
+MakeModel(const PhantomOptions & options)
 {
   if (options.surface.empty())
   {
@@ -39,7 +39,7 @@ MakeModel(const Options & options)
 }
 
 void
-Run(const Options & options, Session & session)
+RunPhantom(const PhantomOptions & options, Session & session)
 {
   using SourceType = PhantomImageSource<CTImage>;
   auto source = SourceType::New();
@@ -63,7 +63,7 @@ Run(const Options & options, Session & session)
 void
 AddPhantomCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<PhantomOptions>();
   auto * command = app.add_subcommand("phantom", "Make the CT of an analytic bone with a known density and label map");
   auto * bone = command->add_option("--bone", options->bone, "Which bone; default femur")
                   ->check(CLI::IsMember(PhantomNames()).description(""))
@@ -77,6 +77,6 @@ AddPhantomCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->image);
   command->add_option("-o,--output", options->output, "CT to write (.nii.gz, .mha, .nrrd, ...)")->required();
   command->add_option("--labels", options->labels, "Label map to write: 1 cortical, 2 trabecular, 3 medullary cavity");
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunPhantom(*options, session); }; });
 }
 } // namespace bone

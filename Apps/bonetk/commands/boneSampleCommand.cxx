@@ -16,7 +16,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct SampleOptions
 {
   std::string              input;
   std::vector<std::string> shape;
@@ -54,7 +54,7 @@ Coefficients(const std::vector<std::string> & settings, Eigen::Index modes, cons
 
 /** Draws what the model has, within the paper's box. */
 void
-Draw(const Options & options, const StatisticalModel & model, Eigen::VectorXd & shape, Eigen::VectorXd & density)
+Draw(const SampleOptions & options, const StatisticalModel & model, Eigen::VectorXd & shape, Eigen::VectorXd & density)
 {
   const auto & content = model.GetContent();
   if (model.IsCombined())
@@ -70,7 +70,7 @@ Draw(const Options & options, const StatisticalModel & model, Eigen::VectorXd & 
 }
 
 void
-Run(const Options & options, Session & session)
+RunSample(const SampleOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
   const auto      model = ReadStatisticalModel(options.input);
@@ -103,7 +103,7 @@ Run(const Options & options, Session & session)
 void
 AddSampleCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<SampleOptions>();
   auto * command = app.add_subcommand("sample", "Make a model from the mean and modes of a statistical model");
   command->add_option("model", options->input, "Statistical model (.h5)")->required();
   auto * shape =
@@ -125,7 +125,7 @@ AddSampleCommand(CLI::App & app, Action & action)
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, seed, &action] {
     options->random = seed->count() > 0;
-    action = [options](Session & session) { Run(*options, session); };
+    action = [options](Session & session) { RunSample(*options, session); };
   });
 }
 } // namespace bone

@@ -15,7 +15,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct SimplifyOptions
 {
   std::string             mesh;
   TetraCollapseParameters parameters;
@@ -43,7 +43,7 @@ Verify(const TetraCollapseParameters & parameters)
 }
 
 void
-Run(const Options & options, Session & session)
+RunSimplify(const SimplifyOptions & options, Session & session)
 {
   TetraCollapseParameters parameters = options.parameters;
   Verify(parameters);
@@ -72,7 +72,7 @@ Run(const Options & options, Session & session)
 void
 AddSimplifyCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<SimplifyOptions>();
   auto * command = app.add_subcommand("simplify", "Simplify a density mesh into a hierarchy of coarser levels");
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
   AddParameterOptions(command, options->parameters);
@@ -86,7 +86,7 @@ AddSimplifyCommand(CLI::App & app, Action & action)
     {
       options->parameters.minimumCorticalDihedralAngle = 0.5 * options->parameters.minimumDihedralAngle;
     }
-    action = [options](Session & session) { Run(*options, session); };
+    action = [options](Session & session) { RunSimplify(*options, session); };
   });
 }
 } // namespace bone

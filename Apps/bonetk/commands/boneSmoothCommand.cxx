@@ -16,7 +16,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct SmoothOptions
 {
   std::string              input;
   std::string              method{ "quality" };
@@ -35,7 +35,7 @@ using FilterType = MeshToMeshFilter<MeshType>;
 
 /** The whole chain of \ref MeshQualityFilter, as `bonetk build` has it. */
 FilterType::Pointer
-MakeQuality(const Options & options)
+MakeQuality(const SmoothOptions & options)
 {
   auto quality = MeshQualityFilter<MeshType>::New();
   quality->SetParameters(options.quality);
@@ -57,7 +57,7 @@ MakeQuality(const Options & options)
 
 /** Moves of points alone. */
 FilterType::Pointer
-MakeSmoothing(const Options & options)
+MakeSmoothing(const SmoothOptions & options)
 {
   auto smoothing = TetraSmoothingFilter<MeshType>::New();
   smoothing->SetParameters(options.smoothing);
@@ -72,7 +72,7 @@ MakeSmoothing(const Options & options)
 }
 
 void
-Run(const Options & options, Session & session)
+RunSmooth(const SmoothOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".vtu" });
   const FilterType::Pointer filter = options.method == "quality" ? MakeQuality(options) : MakeSmoothing(options);
@@ -91,7 +91,7 @@ Run(const Options & options, Session & session)
 void
 AddSmoothCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<SmoothOptions>();
   auto * command = app.add_subcommand("smooth", "Smooth a layered tetrahedral mesh and mend its worst tetrahedra");
   command->add_option("mesh", options->input, "Mesh (.vtu)")->required();
   command
@@ -131,7 +131,7 @@ AddSmoothCommand(CLI::App & app, Action & action)
         throw CLI::ValidationError(of, "goes with --method quality only");
       }
     }
-    action = [options](Session & session) { Run(*options, session); };
+    action = [options](Session & session) { RunSmooth(*options, session); };
   });
 }
 } // namespace bone

@@ -19,7 +19,7 @@ namespace bone
 {
 namespace
 {
-struct Options
+struct TrainOptions
 {
   std::string                 list;
   std::string                 standard;
@@ -56,7 +56,7 @@ RegistrationLine(const SubjectFiles &           subject,
 }
 
 void
-Run(const Options & options, Session & session)
+RunTrain(const TrainOptions & options, Session & session)
 {
   VerifyExtension(options.output, { ".h5" });
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
@@ -128,7 +128,7 @@ Run(const Options & options, Session & session)
 void
 AddTrainCommand(CLI::App & app, Action & action)
 {
-  auto   options = std::make_shared<Options>();
+  auto   options = std::make_shared<TrainOptions>();
   auto * command =
     app.add_subcommand("train", "Train a statistical model of shape and density from a list of subjects");
   command
@@ -154,6 +154,6 @@ AddTrainCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->registration, { "mirror", "method", "interior", "exteriorBound" });
   command->add_option("--registered", options->registered, "Folder to keep the registered subjects in; default: none");
   command->add_option("-o,--output", options->output, "Statistical model to write (.h5)")->required();
-  command->callback([options, &action] { action = [options](Session & session) { Run(*options, session); }; });
+  command->callback([options, &action] { action = [options](Session & session) { RunTrain(*options, session); }; });
 }
 } // namespace bone

@@ -15,7 +15,7 @@ namespace bone
 namespace
 {
 void
-Run(const std::string & path, Session & session)
+RunValidate(const std::string & path, Session & session)
 {
   const MeshArrays     mesh = ReadMeshArrays(path);
   const MeshValidation result = ValidateMesh(mesh);
@@ -46,6 +46,6 @@ AddValidateCommand(CLI::App & app, Action & action)
   auto * command =
     app.add_subcommand("validate", "Check topology, orientation and quality of a mesh; exit 1 if invalid");
   command->add_option("mesh", *path, "Mesh (.vtu)")->required();
-  command->callback([path, &action] { action = [path](Session & session) { Run(*path, session); }; });
+  command->callback([path, &action] { action = [path](Session & session) { RunValidate(*path, session); }; });
 }
 } // namespace bone

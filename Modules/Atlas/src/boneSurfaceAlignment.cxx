@@ -21,7 +21,7 @@ namespace
 constexpr double      Convergence = 1e-3; // change of the root mean square distance, relative
 constexpr int         FlipSamples = 400;
 constexpr int         FlipIterations = 30;
-constexpr std::size_t Chunk = 64; // samples that a thread takes at once
+constexpr std::size_t SamplesAtOnce = 64; // samples that a thread takes at once
 
 struct Sample
 {
@@ -179,7 +179,7 @@ private:
           found[i] = { match.squaredDistance, s.point, match.point, m_Target.NormalAt(match.triangle, match.point) };
         }
       },
-      Chunk);
+      SamplesAtOnce);
     m_Execution.Silent().For(
       m_TargetSamples.size(),
       [&](std::size_t i) {
@@ -191,7 +191,7 @@ private:
           found[m_SourceSamples.size() + i] = { squared, match.point, s.point, s.normal };
         }
       },
-      Chunk);
+      SamplesAtOnce);
     std::vector<Candidate> pairs;
     std::copy_if(found.begin(), found.end(), std::back_inserter(pairs), [](const Candidate & c) {
       return c.squaredDistance >= 0;

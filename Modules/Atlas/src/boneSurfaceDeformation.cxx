@@ -12,7 +12,7 @@ namespace bone
 {
 namespace
 {
-constexpr std::size_t Chunk = 64; // vertices that a thread takes at once
+constexpr std::size_t VerticesAtOnce = 64; // vertices that a thread takes at once
 
 std::vector<std::vector<IdType>>
 EdgeNeighbors(const TriangleSurface & surface)
@@ -59,7 +59,7 @@ SortRings(const TriangleSurface & surface, const Execution & execution, RingNeig
                          [&](IdType a, IdType b) { return angle(a) < angle(b); });
       }
     },
-    Chunk);
+    VerticesAtOnce);
 }
 
 /** A third of the area of the triangles around each point. */
@@ -186,7 +186,7 @@ private:
         pull.weight[v] =
           agreement * agreement / (1 + 2 * (change / m_P.attributeWidth) * (change / m_P.attributeWidth));
       },
-      Chunk);
+      VerticesAtOnce);
     this->AddTargetPull(pull);
     return pull;
   }
@@ -204,7 +204,7 @@ private:
       [&](std::size_t i) {
         matches[i * stride] = source.Find(points[i * stride], m_Target.GetPointNormals()[i * stride]);
       },
-      Chunk);
+      VerticesAtOnce);
     std::vector<Vector3> sum(m_Rest.size(), Vector3::Zero());
     std::vector<double>  weight(m_Rest.size(), 0.0);
     for (std::size_t p = 0; p < points.size(); ++p)
@@ -252,7 +252,7 @@ private:
     }
     std::vector<Vector3> moved(m_Rest.size());
     m_Execution.Silent().For(
-      m_Rest.size(), [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); }, Chunk);
+      m_Rest.size(), [&](std::size_t v) { moved[v] = this->MapVertex(v, rings, terms); }, VerticesAtOnce);
     m_Source.points = std::move(moved);
   }
 
@@ -356,7 +356,7 @@ AttributeVectors(const std::vector<Vector3> & points,
         column /= sum;
       }
     },
-    Chunk);
+    VerticesAtOnce);
   return attributes;
 }
 

@@ -36,6 +36,8 @@ public:
     Cavity = 2
   };
   static constexpr int MaximumSurfaces = 3;
+  /** Beyond this many standard deviations a Gaussian counts as 0: 7e-6 of the step at a surface. */
+  static constexpr double GaussianTail = 4.35;
 
   using Levels = std::array<double, MaximumSurfaces>;
   using Gradients = std::array<Vector3, MaximumSurfaces>;

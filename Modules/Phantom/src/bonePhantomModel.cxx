@@ -13,9 +13,6 @@ namespace bone
 {
 namespace
 {
-/** Beyond this many standard deviations a Gaussian counts as 0: 7e-6 of the step at a surface. */
-constexpr double Tail = 4.35;
-
 /** Integral of the standard normal density up to t. */
 double
 NormalCdf(double t)
@@ -111,7 +108,7 @@ PhantomModel::BlurredDensity(const Vector3 & x, const Eigen::Matrix3d & axes, co
     double        inside = levels[i] < 0.0 ? 1.0 : 0.0;
     const Vector3 gradient = spread.transpose() * gradients[i];
     const double  width = gradient.norm() / std::max(gradients[i].norm(), 1e-300);
-    if (gradient.norm() > 1e-9 && std::abs(levels[i]) < Tail * width * this->GetLipschitzBound(i))
+    if (gradient.norm() > 1e-9 && std::abs(levels[i]) < GaussianTail * width * this->GetLipschitzBound(i))
     {
       inside = this->MeasureInside(i, x, levels[i], spread, gradient.normalized());
     }

@@ -15,8 +15,6 @@ namespace
 {
 /** Standard deviations (mm) below this count as none. */
 constexpr double NoSpread = 1e-6;
-/** Reach of the point spread in standard deviations. */
-constexpr double Tail = 4.35;
 /** Edge of the blocks that are classified as a whole, mm. */
 constexpr double BlockEdge = 2.0;
 
@@ -192,7 +190,7 @@ PhantomSampler::MakeKernel(double spacing, double sigma)
   const double narrow = analytic * rest / sigma;
   kernel.factor = std::max(1L, static_cast<long>(std::ceil(spacing / (1.65 * narrow) - 1e-9)));
   const double step = spacing / static_cast<double>(kernel.factor);
-  const auto   reach = static_cast<long>(std::ceil(Tail * rest / step));
+  const auto   reach = static_cast<long>(std::ceil(PhantomModel::GaussianTail * rest / step));
   const long   count = 2 * reach + (kernel.factor % 2 == 0 ? 0 : 1);
   kernel.weights.resize(count);
   double sum = 0.0;
@@ -214,7 +212,7 @@ PhantomSampler::SampleFine(signed char content, const Vector3 & x) const
   const PhantomModel::Levels levels = m_Model->EvaluateLevels(x);
   if (content == Neighbourhoods::Mixed)
   {
-    content = Neighbourhoods::Classify(*m_Model, levels, Tail * m_AnalyticSigma.maxCoeff());
+    content = Neighbourhoods::Classify(*m_Model, levels, PhantomModel::GaussianTail * m_AnalyticSigma.maxCoeff());
   }
   switch (content)
   {
@@ -306,7 +304,7 @@ PhantomSampler::SampleDensity(const PhantomBlock & block, float * density) const
     box.start[a] = m_Kernels[a].First(block.start[a]);
     box.size[a] = (block.size[a] - 1) * m_Kernels[a].factor + m_Kernels[a].weights.size();
   }
-  const Neighbourhoods neighbourhoods(*m_Model, m_Fine, Tail * m_AnalyticSigma.maxCoeff(), box);
+  const Neighbourhoods neighbourhoods(*m_Model, m_Fine, PhantomModel::GaussianTail * m_AnalyticSigma.maxCoeff(), box);
 
   const Kernel &      kz = m_Kernels[2];
   const auto          taps = static_cast<long>(kz.weights.size());

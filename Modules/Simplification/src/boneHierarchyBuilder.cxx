@@ -11,7 +11,7 @@ namespace bone
 namespace
 {
 /** Flips after a level is reached look at cells with a dihedral angle below this, rad (25 degrees). */
-constexpr double FlipAngle = 0.44;
+constexpr double LevelFlipAngle = 0.44;
 /** Under a bound on the density error, this share of the cells goes before the error is measured again; when the bound
  * is passed, the step is taken back and halved until it is this small. */
 constexpr double Stride = 0.3;
@@ -106,9 +106,9 @@ bool
 HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution & execution)
 {
   level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), execution.Part(0.0, 0.9));
-  m_Collapser->Flip(FlipAngle, FlipCellCount::NotMore, target, execution);
+  m_Collapser->Flip(LevelFlipAngle, FlipCellCount::NotMore, target, execution);
   level.collapses += m_Collapser->Run(target, execution.Part(0.9, 1.0));
-  m_Collapser->Flip(FlipAngle, FlipCellCount::Same, target, execution);
+  m_Collapser->Flip(LevelFlipAngle, FlipCellCount::Same, target, execution);
   return m_Collapser->Complex().AliveCells() <= target;
 }
 

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneContourSampling.h"
 
+#include "boneContourStack.h"
 #include "boneLayerDistance.h"
 #include "boneMedialAxis.h"
 #include "bonePlanarCrossing.h"
@@ -36,17 +37,6 @@ struct LoopPlan
   std::vector<Vector2> curve;  // fine points on the spline
   std::vector<double>  target; // spacing wanted there
 };
-
-double
-Perimeter(const Polygon & polygon)
-{
-  double length = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
-  }
-  return length;
-}
 
 // The polygon with points on its long edges, so that none is longer than `longest`.
 Polygon

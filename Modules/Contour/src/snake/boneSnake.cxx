@@ -65,17 +65,6 @@ Diffuse(PlaneField & flow, const std::vector<float> & weight)
 }
 
 double
-Perimeter(const Polygon & polygon)
-{
-  double length = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
-  }
-  return length;
-}
-
-double
 MeanMotion(const Polygon & a, const Polygon & b)
 {
   double squared = 0.0;

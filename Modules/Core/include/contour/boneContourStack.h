@@ -139,6 +139,10 @@ private:
 double
 SignedArea(const std::vector<Vector2> & polygon);
 
+/** Length (mm) of a closed polygon in the plane. */
+double
+Perimeter(const std::vector<Vector2> & polygon);
+
 /** True where q lies inside the closed polygon (crossing number; points on the edge may go either way). */
 bool
 PointInPolygon(const Vector2 & q, const std::vector<Vector2> & polygon);

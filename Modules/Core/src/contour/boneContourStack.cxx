@@ -197,6 +197,17 @@ SignedArea(const std::vector<Vector2> & polygon)
   return 0.5 * area;
 }
 
+double
+Perimeter(const std::vector<Vector2> & polygon)
+{
+  double length = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+  }
+  return length;
+}
+
 bool
 PointInPolygon(const Vector2 & q, const std::vector<Vector2> & polygon)
 {

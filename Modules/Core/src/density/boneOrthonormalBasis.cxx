@@ -63,10 +63,10 @@ MakeTables()
 
 const Tables Table = MakeTables();
 
-using Row = std::array<double, N + 1>;
+using JacobiRow = std::array<double, N + 1>;
 
 inline void
-Jacobi(int alpha, int degree, double x, double t, Row & values)
+Jacobi(int alpha, int degree, double x, double t, JacobiRow & values)
 {
   values[0] = 1;
   double before = 0;
@@ -79,7 +79,7 @@ Jacobi(int alpha, int degree, double x, double t, Row & values)
 }
 
 inline void
-CheckDegree(int degree)
+CheckOrthonormalDegree(int degree)
 {
   if (degree < 0 || degree > N)
   {
@@ -117,7 +117,7 @@ MakeChange(int degree)
 const Change &
 ChangeOf(int degree)
 {
-  CheckDegree(degree);
+  CheckOrthonormalDegree(degree);
   static std::array<Change, N + 1>         changes;
   static std::array<std::once_flag, N + 1> made;
   std::call_once(made[degree], [degree] { changes[degree] = MakeChange(degree); });
@@ -128,9 +128,9 @@ ChangeOf(int degree)
 void
 OrthonormalBasis(int degree, const Barycentric & mu, double * values)
 {
-  CheckDegree(degree);
+  CheckOrthonormalDegree(degree);
   const double t1 = mu[0] + mu[1], t2 = t1 + mu[2];
-  Row          first, second, third;
+  JacobiRow    first, second, third;
   Jacobi(0, degree, mu[1] - mu[0], t1, first);
   for (int p = 0; p <= degree; ++p)
   {
@@ -164,7 +164,7 @@ BernsteinToOrthonormal(int degree)
 double
 BernsteinDamping(int n, int k)
 {
-  CheckDegree(n);
+  CheckOrthonormalDegree(n);
   if (k < 0 || k > n)
   {
     throw std::out_of_range("A polynomial of degree " + std::to_string(n) + " has no part of degree " +
@@ -181,8 +181,8 @@ BernsteinDamping(int n, int k)
 void
 BernsteinReduce(int from, const double * c, int to, double * reduced)
 {
-  CheckDegree(from);
-  CheckDegree(to);
+  CheckOrthonormalDegree(from);
+  CheckOrthonormalDegree(to);
   if (to > from)
   {
     throw std::out_of_range("A Bernstein polynomial of degree " + std::to_string(from) +

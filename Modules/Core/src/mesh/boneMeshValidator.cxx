@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneMeshValidator.h"
 
+#include "boneEdgeUses.h"
 #include "bonePredicates.h"
 
 #include <Eigen/Geometry>
@@ -79,12 +80,6 @@ public:
 private:
   std::vector<std::size_t> m_Parent;
 };
-
-std::uint64_t
-PairKey(IdType a, IdType b)
-{
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32) | static_cast<std::uint32_t>(b);
-}
 
 // A face as one tetrahedron sees it; uses of the same face are neighbours after sorting.
 struct FaceUse
@@ -177,41 +172,10 @@ ExtractSurface(const std::vector<FaceUse> & faces, const std::vector<Id4> & tetr
   return surface;
 }
 
-struct EdgeUse
-{
-  std::uint64_t key;    // smaller and larger vertex
-  std::uint32_t corner; // 3 face + i for the edge from the face's vertex i to vertex i+1
-};
-
 std::vector<EdgeUse>
-SortedEdges(const Surface & surface)
+EdgesOf(const Surface & surface)
 {
-  std::vector<EdgeUse> edges;
-  edges.reserve(3 * surface.faces.size());
-  for (std::size_t f = 0; f < surface.faces.size(); ++f)
-  {
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-      const IdType a = surface.faces[f][i], b = surface.faces[f][(i + 1) % 3];
-      edges.push_back({ PairKey(std::min(a, b), std::max(a, b)), static_cast<std::uint32_t>(3 * f + i) });
-    }
-  }
-  std::sort(edges.begin(), edges.end(), [](const EdgeUse & a, const EdgeUse & b) {
-    return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-  });
-  return edges;
-}
-
-template <typename TVisitor>
-void
-ForEachEdge(const std::vector<EdgeUse> & edges, TVisitor && visit)
-{
-  for (auto first = edges.begin(); first != edges.end();)
-  {
-    const auto last = std::find_if(first, edges.end(), [&](const EdgeUse & edge) { return edge.key != first->key; });
-    visit(first, last);
-    first = last;
-  }
+  return SortedEdges(surface.faces.size(), [&surface](std::size_t f, std::size_t i) { return surface.faces[f][i]; });
 }
 
 // Numbers of a surface's fans: corners joined across edges, one root a fan.
@@ -250,7 +214,7 @@ CheckFans(const Surface & surface, DisjointSets & corners, const std::string & w
 int
 CheckClosedManifold(const Surface & surface, const std::string & where, MeshCheck & check)
 {
-  const auto   edges = SortedEdges(surface);
+  const auto   edges = EdgesOf(surface);
   std::size_t  numberOfEdges = 0;
   DisjointSets corners(3 * surface.faces.size());
   const auto   vertexOf = [&](std::uint32_t corner) { return surface.faces[corner / 3][corner % 3]; };
@@ -498,7 +462,7 @@ DisjointSets
 BoundarySheets(const Surface & boundary, DisjointSets & body)
 {
   DisjointSets sheets(boundary.faces.size());
-  ForEachEdge(SortedEdges(boundary), [&](auto first, auto last) {
+  ForEachEdge(EdgesOf(boundary), [&](auto first, auto last) {
     for (auto a = first; a != last; ++a)
     {
       for (auto b = a + 1; b != last; ++b)

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneSurfaceComplex.h"
 
+#include "boneEdgeUses.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -26,54 +28,10 @@ struct Face
   int                   side;
 };
 
-/** A use of the edge first < second by a face. */
-struct EdgeUse
-{
-  IdType first;
-  IdType second;
-  int    face;
-
-  bool
-  SameEdge(const EdgeUse & other) const
-  {
-    return first == other.first && second == other.second;
-  }
-};
-
 std::vector<EdgeUse>
-SortedEdges(const std::vector<Face> & faces)
+EdgesOf(const std::vector<Face> & faces)
 {
-  std::vector<EdgeUse> edges;
-  edges.reserve(3 * faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      const IdType a = faces[f].vertices[k], b = faces[f].vertices[(k + 1) % 3];
-      edges.push_back({ std::min(a, b), std::max(a, b), static_cast<int>(f) });
-    }
-  }
-  std::sort(edges.begin(), edges.end(), [](const EdgeUse & x, const EdgeUse & y) {
-    return x.first != y.first ? x.first < y.first : x.second != y.second ? x.second < y.second : x.face < y.face;
-  });
-  return edges;
-}
-
-/** Calls visit(begin, end) for each run of uses of one edge. */
-template <typename TVisit>
-void
-ForEachEdge(const std::vector<EdgeUse> & edges, TVisit visit)
-{
-  for (std::size_t begin = 0; begin < edges.size();)
-  {
-    std::size_t end = begin + 1;
-    while (end < edges.size() && edges[end].SameEdge(edges[begin]))
-    {
-      ++end;
-    }
-    visit(begin, end);
-    begin = end;
-  }
+  return SortedEdges(faces.size(), [&faces](std::size_t f, std::size_t i) { return faces[f].vertices[i]; });
 }
 
 /** Finds flat cuts among boundary faces: one number a face, -1 for none. */
@@ -86,12 +44,11 @@ public:
     , m_Number(faces.size(), -1)
     , m_Adjacent(faces.size(), std::array<int, 3>{ -1, -1, -1 })
   {
-    const std::vector<EdgeUse> edges = SortedEdges(faces);
-    ForEachEdge(edges, [&](std::size_t begin, std::size_t end) {
-      if (end - begin == 2)
+    ForEachEdge(EdgesOf(faces), [&](auto first, auto last) {
+      if (last - first == 2)
       {
-        Connect(edges[begin].face, edges[begin + 1].face);
-        Connect(edges[begin + 1].face, edges[begin].face);
+        Connect(first->Face(), first[1].Face());
+        Connect(first[1].Face(), first->Face());
       }
     });
     CollectVertices();
@@ -273,18 +230,18 @@ public:
     m_Parent.resize(3 * m_Faces.size());
     std::iota(m_Parent.begin(), m_Parent.end(), 0);
     std::vector<int> sheets(m_Complex.dimension.size(), -1); // faces at a point's curve edges
-    ForEachEdge(m_Edges, [&](std::size_t begin, std::size_t end) {
-      const EdgeUse & edge = m_Edges[begin];
-      if (end - begin == 2 && surfaceOfFace[edge.face] == surfaceOfFace[m_Edges[begin + 1].face])
+    ForEachEdge(m_Edges, [&](auto first, auto last) {
+      if (last - first == 2 && surfaceOfFace[first->Face()] == surfaceOfFace[first[1].Face()])
       {
-        Join(edge, m_Edges[begin + 1]);
+        Join(first[0], first[1]);
         return;
       }
-      for (const IdType v : { edge.first, edge.second })
+      const IdType a = first->First(), b = first->Second();
+      for (const IdType v : { a, b })
       {
-        const int count = static_cast<int>(end - begin);
+        const int count = static_cast<int>(last - first);
         sheets[v] = sheets[v] == -1 || sheets[v] == count ? count : -2;
-        m_Complex.curve[v].push_back(v == edge.first ? edge.second : edge.first);
+        m_Complex.curve[v].push_back(v == a ? b : a);
       }
     });
     SetDimensions(sheets);
@@ -311,9 +268,9 @@ private:
   void
   Join(const EdgeUse & a, const EdgeUse & b)
   {
-    for (const IdType v : { a.first, a.second })
+    for (const IdType v : { a.First(), a.Second() })
     {
-      m_Parent[Root(Corner(a.face, v))] = Root(Corner(b.face, v));
+      m_Parent[Root(Corner(a.Face(), v))] = Root(Corner(b.Face(), v));
     }
   }
 
@@ -391,7 +348,7 @@ FindSurfaces(const MeshArrays & mesh)
       complex.faceSurface[n][std::find(back.begin(), back.end() - 1, t) - back.begin()] = id;
     }
   }
-  const std::vector<EdgeUse> edges = SortedEdges(faces);
+  const std::vector<EdgeUse> edges = EdgesOf(faces);
   PointClassifier(faces, edges, complex).Run(surfaceOfFace);
   return complex;
 }

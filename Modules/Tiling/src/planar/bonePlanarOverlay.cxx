@@ -16,15 +16,8 @@ namespace tiling
 namespace
 {
 using Triangle = std::array<int, 3>;
-using Edge = PlanarOverlay::Edge;
 
 constexpr int Corners = 4;
-
-Edge
-Undirected(int a, int b)
-{
-  return { { std::min(a, b), std::max(a, b) } };
-}
 
 /** The triangles of a triangulation by the cells of a grid that their bounds meet. */
 class TriangleGrid

@@ -5,7 +5,7 @@
 #define bonePlanarOverlay_h
 
 #include "boneExecution.h"
-#include "boneTypes.h"
+#include "boneTilingTypes.h"
 
 #include <array>
 #include <map>
@@ -36,9 +36,6 @@ struct PlanarOverlay
     int                first;    ///< triangle of the first triangulation that it lies in
     int                second;   ///< and of the second
   };
-  /** An edge as a pair of its vertices, ascending. */
-  using Edge = std::array<int, 2>;
-
   /** Vertices of the first triangulation, then those of the second but its corners, then the crossings. */
   std::vector<Vector2>  points;
   std::vector<Triangle> triangles;

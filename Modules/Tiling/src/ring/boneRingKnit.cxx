@@ -16,8 +16,7 @@ namespace tiling
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr int    NumberOfStarts = 6;
+constexpr int NumberOfKnits = 6;
 
 /** The diagonal that cuts the quadrilateral between two spanning edges. */
 enum Diagonal : int
@@ -433,7 +432,7 @@ RankStarts(const VertexPool & pool, const RingPair & rings, const Merge & inner)
 {
   const int          n = static_cast<int>(inner.letters.size());
   std::vector<Start> starts;
-  const int          count = std::max(1, std::min(n, 4 * NumberOfStarts));
+  const int          count = std::max(1, std::min(n, 4 * NumberOfKnits));
   int                p = inner.first, q = inner.second;
   for (int m = 0, taken = 0; m < std::max(n, 1); ++m)
   {
@@ -490,7 +489,7 @@ KnitRing(const VertexPool &        pool,
          bool &                    moreStarts)
 {
   const auto starts = RankStarts(pool, rings, inner);
-  const int  usable = std::min<int>(static_cast<int>(starts.size()), NumberOfStarts);
+  const int  usable = std::min<int>(static_cast<int>(starts.size()), NumberOfKnits);
   moreStarts = start + 1 < usable;
   if (start >= usable)
   {

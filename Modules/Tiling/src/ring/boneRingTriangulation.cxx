@@ -16,7 +16,6 @@ namespace tiling
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr int    NumberOfStarts = 8;
 constexpr double Tie = 1e-9; ///< of the cost
 

@@ -13,8 +13,6 @@ namespace tiling
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
 /** Cheapest monotone merge of two sequences of positions, by the length of the spans. */
 std::vector<std::uint8_t>
 MergeSequences(const std::vector<Vector2> & x, const std::vector<Vector2> & y, double & total)

@@ -74,14 +74,6 @@ ClipEars(const std::vector<Vector2> & p)
   return triangles;
 }
 
-using Edge = std::pair<int, int>;
-
-Edge
-Undirected(int a, int b)
-{
-  return { std::min(a, b), std::max(a, b) };
-}
-
 /** Lawson's flips to the constrained Delaunay triangulation. */
 void
 FlipToDelaunay(const std::vector<Vector2> & p, std::vector<Triangle> & triangles)
@@ -105,7 +97,7 @@ FlipToDelaunay(const std::vector<Vector2> & p, std::vector<Triangle> & triangles
   const auto opposite = [&](int t, const Edge & e) {
     for (int v : triangles[t])
     {
-      if (v != e.first && v != e.second)
+      if (v != e[0] && v != e[1])
       {
         return v;
       }
@@ -116,25 +108,25 @@ FlipToDelaunay(const std::vector<Vector2> & p, std::vector<Triangle> & triangles
   {
     const Edge e = stack.back();
     stack.pop_back();
-    const auto left = owner.find(e), right = owner.find({ e.second, e.first });
+    const auto left = owner.find(e), right = owner.find({ { e[1], e[0] } });
     if (left == owner.end() || right == owner.end())
     {
       continue;
     }
     const int t = left->second, u = right->second;
     const int c = opposite(t, e), d = opposite(u, e);
-    const int a = e.first, b = e.second;
+    const int a = e[0], b = e[1];
     if (InCircle2D(p[a], p[b], p[c], p[d]) <= 0 || Orient2D(p[a], p[d], p[c]) <= 0 || Orient2D(p[d], p[b], p[c]) <= 0)
     {
       continue;
     }
-    owner.erase({ a, b });
-    owner.erase({ b, a });
+    owner.erase({ { a, b } });
+    owner.erase({ { b, a } });
     triangles[t] = { a, d, c };
     triangles[u] = { d, b, c };
     enter(t);
     enter(u);
-    for (const Edge & next : { Edge(a, d), Edge(d, b), Edge(b, c), Edge(c, a) })
+    for (const Edge & next : { Edge{ { a, d } }, Edge{ { d, b } }, Edge{ { b, c } }, Edge{ { c, a } } })
     {
       stack.push_back(next);
     }

@@ -16,14 +16,6 @@ namespace tiling
 {
 namespace
 {
-using Edge = std::pair<int, int>;
-
-Edge
-Undirected(int a, int b)
-{
-  return { std::min(a, b), std::max(a, b) };
-}
-
 class PatchBuilder
 {
 public:

@@ -6,13 +6,28 @@
 
 #include "boneTypes.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace bone
 {
 namespace tiling
 {
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/** An edge by the ids of its ends. */
+using Edge = std::array<int, 2>;
+
+/** The edge with its ends in ascending order. */
+inline Edge
+Undirected(int a, int b)
+{
+  return { { std::min(a, b), std::max(a, b) } };
+}
+
 /** All vertices of the mesh under construction: in-plane coordinates and place in space. */
 struct VertexPool
 {

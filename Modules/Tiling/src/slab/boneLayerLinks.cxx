@@ -30,14 +30,14 @@ public:
     , m_Vertex(box.triangles.size(), static_cast<int>(box.points.size()))
   {
     std::iota(m_Root.begin(), m_Root.end(), 0);
-    std::map<PlanarOverlay::Edge, int> seen;
+    std::map<Edge, int> seen;
     for (std::size_t t = 0; t < box.triangles.size(); ++t)
     {
       const auto & v = box.triangles[t];
       for (int i = 0; i < 3 && (region[t] >= layer) == inner; ++i)
       {
         const int  a = v[i], b = v[(i + 1) % 3];
-        const auto first = seen.emplace(PlanarOverlay::Edge{ { std::min(a, b), std::max(a, b) } }, static_cast<int>(t));
+        const auto first = seen.emplace(Undirected(a, b), static_cast<int>(t));
         if (!first.second)
         {
           const int one = this->Of(static_cast<int>(t)), other = this->Of(first.first->second);

@@ -17,14 +17,6 @@ namespace tiling
 {
 namespace
 {
-using Edge = PlanarOverlay::Edge;
-
-Edge
-EdgeOf(int a, int b)
-{
-  return { { std::min(a, b), std::max(a, b) } };
-}
-
 Vector3
 InPlane(const Vector2 & q)
 {
@@ -44,7 +36,7 @@ ContourTree(const BoxTriangulation & box, const std::vector<int> & region, int l
     for (int i = 0; i < 3; ++i)
     {
       const int  a = v[i], b = v[(i + 1) % 3];
-      const auto first = sides.emplace(EdgeOf(a, b), inside);
+      const auto first = sides.emplace(Undirected(a, b), inside);
       if (!first.second && first.first->second != inside)
       {
         const Vector3 from = InPlane(box.points[a]), to = InPlane(box.points[b]);
@@ -156,7 +148,7 @@ private:
       const auto & v = m_Overlay.triangles[m_Triangles[i]].vertices;
       for (int k = 0; k < 3; ++k)
       {
-        const auto first = seen.emplace(EdgeOf(v[k], v[(k + 1) % 3]), static_cast<int>(i));
+        const auto first = seen.emplace(Undirected(v[k], v[(k + 1) % 3]), static_cast<int>(i));
         if (!first.second)
         {
           m_Parent[Root(static_cast<int>(i))] = Root(first.first->second);

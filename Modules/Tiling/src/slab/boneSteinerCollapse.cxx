@@ -21,11 +21,11 @@ constexpr double GoodShape = 0.4;
 constexpr double FirstFloor = 0.03; ///< worst shape of bone that the first round may make
 constexpr double ShapeWeight = 3.0;
 constexpr double ShapeUnit = 1e-8;
-constexpr double CostUnit = 1e-6;    // mm
-constexpr double ErrorUnit = 1e-4;   // mm; quadrics cancel
-constexpr double LeastArea = 1e-5;   // mm^2; faces of less have no direction
-constexpr double LeastShape = 1e-6;  ///< of bone, and
-constexpr double LeastVolume = 1e-8; ///< mm^3 of what is outside: beyond what coordinates are rounded by
+constexpr double CostUnit = 1e-6;         // mm
+constexpr double ErrorUnit = 1e-4;        // mm; quadrics cancel
+constexpr double LeastArea = 1e-5;        // mm^2; faces of less have no direction
+constexpr double LeastShape = 1e-6;       ///< of bone, and
+constexpr double LeastOuterVolume = 1e-8; ///< mm^3 of what is outside: beyond what coordinates are rounded by
 constexpr double SteinerTargetFactor = 1.5;
 constexpr double ErrorWeight = 10.0; ///< a surface's error against the way a point goes
 
@@ -373,7 +373,7 @@ private:
           return worst;
         }
       }
-      else if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > LeastVolume))
+      else if (!(SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) > LeastOuterVolume))
       {
         return -1.0;
       }
