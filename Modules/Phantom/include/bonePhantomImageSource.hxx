@@ -226,15 +226,16 @@ void
 PhantomImageSource<TOutputImage>::GenerateData()
 {
   // Slabs share work at their common faces, so they are some slices thick; but an abort waits for those being filled.
-  constexpr itk::SizeValueType thickest = 16, mostVoxels = 1 << 17;
+  constexpr itk::SizeValueType thickest = 16, mostVoxels = 1 << 17, leastPieces = 32;
 
   const Execution execution(this);
   this->AllocateOutputs();
   const PhantomSampler     sampler = this->MakeSampler();
   const RegionType         region = this->GetOutput()->GetBufferedRegion();
   const itk::SizeValueType slices = region.GetSize(2), sliceSize = region.GetSize(0) * region.GetSize(1);
-  const itk::SizeValueType slab = std::clamp<itk::SizeValueType>(
-    std::min(mostVoxels / sliceSize, slices / (4 * execution.GetNumberOfWorkUnits())), 1, thickest);
+  const itk::SizeValueType pieces = std::max<itk::SizeValueType>(leastPieces, 4 * execution.GetNumberOfWorkUnits());
+  const itk::SizeValueType slab =
+    std::clamp<itk::SizeValueType>(std::min(mostVoxels / sliceSize, slices / pieces), 1, thickest);
   execution.For((slices + slab - 1) / slab, [&](std::size_t s) {
     RegionType piece = region;
     piece.SetIndex(2, region.GetIndex(2) + static_cast<itk::IndexValueType>(s * slab));
