@@ -2,12 +2,17 @@
 # GoogleTest for the test programs (position-independent executables, which GCC does not let share the first).
 # Nine tenths of what a source of BoneTK is compiled from are ITK's image, Eigen and the standard library.
 option(BONETK_PRECOMPILE "Precompile the headers that most sources include" ON)
-# A library's sources are compiled eight at once: what they instantiate alike is instantiated once.
+# A library's sources are compiled twelve at once, bonetk's all: what they instantiate alike is instantiated once.
 option(BONETK_UNITY_BUILD "Compile several sources of a library or program at once" ON)
 
+function(bonetk_unity_build target sources)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BONETK_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${sources})
+endfunction()
+
+# <Eigen/Eigenvalues> stands for that of ITK's own, older Eigen, which its image readers include.
 set(BONETK_PRECOMPILED_HEADERS
     <algorithm> <array> <cmath> <cstddef> <functional> <limits> <map> <memory> <ostream> <sstream> <stdexcept> <string>
-    <utility> <vector> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <itkImage.h> <itkPointSet.h> <itkProcessObject.h>)
+    <utility> <vector> <Eigen/Core> <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU> <itkImage.h> <itkPointSet.h> <itkProcessObject.h>)
 
 function(bonetk_precompiled_target target)
   bonetk_compile_settings(${target})
