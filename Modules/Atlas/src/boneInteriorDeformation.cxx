@@ -3,10 +3,12 @@
  *=========================================================================*/
 #include "boneInteriorDeformation.h"
 
-#include <Eigen/Eigenvalues>
+#include "boneSparseCholesky.h"
+#include "boneSymmetricEigen.h"
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 #include <numeric>
 #include <stdexcept>
@@ -38,7 +40,7 @@ FindFrame(const std::vector<std::size_t> & ids, const TGet & get)
     const Vector3 d = get(i) - frame.origin;
     covariance += d * d.transpose();
   }
-  frame.axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  frame.axes = EigenOf(covariance).vectors;
   return frame;
 }
 
@@ -58,8 +60,8 @@ ShapeGradients(const std::array<Vector3, 4> & x, std::array<Vector3, 4> & gradie
 
 struct InteriorDeformation::Solver
 {
-  Eigen::SparseMatrix<double>                        coupling; // interior by exterior
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+  Eigen::SparseMatrix<double> coupling; // interior by exterior
+  SparseCholesky              factor;
 };
 
 InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vector<IdType> & exterior)
@@ -84,7 +86,8 @@ InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vec
       m_Interior.push_back(static_cast<IdType>(p));
     }
   }
-  std::vector<Eigen::Triplet<double>> inner, outer;
+  std::vector<SparseEntry>            inner;
+  std::vector<Eigen::Triplet<double>> outer;
   for (const Id4 & t : mesh.tetrahedra)
   {
     std::array<Vector3, 4> gradient;
@@ -96,7 +99,7 @@ InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vec
         const double entry = volume * gradient[i].dot(gradient[j]);
         if (number[t[j]] >= 0)
         {
-          inner.emplace_back(number[t[i]], number[t[j]], entry);
+          inner.push_back({ number[t[i]], number[t[j]], entry });
         }
         else
         {
@@ -105,18 +108,12 @@ InteriorDeformation::InteriorDeformation(const MeshArrays & mesh, const std::vec
       }
     }
   }
-  const auto                  size = static_cast<Eigen::Index>(m_Interior.size());
-  Eigen::SparseMatrix<double> stiffness(size, size);
-  stiffness.setFromTriplets(inner.begin(), inner.end());
+  const auto size = static_cast<Eigen::Index>(m_Interior.size());
   m_Solver->coupling.resize(size, static_cast<Eigen::Index>(exterior.size()));
   m_Solver->coupling.setFromTriplets(outer.begin(), outer.end());
-  if (size > 0)
+  if (size > 0 && !m_Solver->factor.Factorize(size, inner))
   {
-    m_Solver->factor.compute(stiffness);
-    if (m_Solver->factor.info() != Eigen::Success)
-    {
-      throw std::invalid_argument("The standard model's cells are too flat for a harmonic displacement.");
-    }
+    throw std::invalid_argument("The standard model's cells are too flat for a harmonic displacement.");
   }
 }
 
@@ -149,7 +146,7 @@ InteriorDeformation::DeformHarmonic(const AffineMap & alignment, const std::vect
   if (!m_Interior.empty())
   {
     const Eigen::MatrixX3d right = -(m_Solver->coupling * displacement);
-    const Eigen::MatrixX3d inner = m_Solver->factor.solve(right);
+    const Eigen::MatrixXd  inner = m_Solver->factor.Solve(right);
     for (std::size_t i = 0; i < m_Interior.size(); ++i)
     {
       points[m_Interior[i]] = alignment(m_Points[m_Interior[i]]) + inner.row(static_cast<Eigen::Index>(i)).transpose();

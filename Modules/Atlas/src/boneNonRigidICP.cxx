@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneNonRigidICP.h"
 
-#include <Eigen/SparseCholesky>
+#include "boneSparseCholesky.h"
 
 #include <algorithm>
 #include <set>
@@ -49,19 +49,19 @@ public:
   std::vector<Vector3>
   Solve(double stiffness, const std::vector<Vector3> & places, const std::vector<double> & weights)
   {
-    const auto                          n = static_cast<Eigen::Index>(m_Rest.size());
-    std::vector<Eigen::Triplet<double>> entries;
+    const auto               n = static_cast<Eigen::Index>(m_Rest.size());
+    std::vector<SparseEntry> entries;
     for (const auto & edge : m_Edges)
     {
       const int a = 4 * edge[0], b = 4 * edge[1];
       for (int i = 0; i < 4; ++i)
       {
-        entries.emplace_back(a + i, a + i, stiffness);
-        entries.emplace_back(b + i, b + i, stiffness);
-        entries.emplace_back(std::max(a, b) + i, std::min(a, b) + i, -stiffness);
+        entries.push_back({ a + i, a + i, stiffness });
+        entries.push_back({ b + i, b + i, stiffness });
+        entries.push_back({ std::max(a, b) + i, std::min(a, b) + i, -stiffness });
       }
     }
-    Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(4 * n, 3);
+    Eigen::MatrixXd right = Eigen::MatrixX3d::Zero(4 * n, 3);
     for (Eigen::Index v = 0; v < n; ++v)
     {
       const double          w = weights[static_cast<std::size_t>(v)];
@@ -70,21 +70,14 @@ public:
       {
         for (int j = 0; j <= i; ++j)
         {
-          entries.emplace_back(4 * v + i, 4 * v + j, w * x[i] * x[j]);
+          entries.push_back({ 4 * v + i, 4 * v + j, w * x[i] * x[j] });
         }
         right.row(4 * v + i) = w * x[i] * ((places[static_cast<std::size_t>(v)] - m_Centre) / m_Scale).transpose();
       }
     }
-    Eigen::SparseMatrix<double> matrix(4 * n, 4 * n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    if (!m_Analyzed)
-    {
-      m_Factor.analyzePattern(matrix);
-      m_Analyzed = true;
-    }
-    m_Factor.factorize(matrix);
-    const Eigen::MatrixX3d maps = m_Factor.solve(right);
-    std::vector<Vector3>   moved(m_Rest.size());
+    m_Factor.Factorize(4 * n, entries);
+    const Eigen::MatrixXd maps = m_Factor.Solve(right);
+    std::vector<Vector3>  moved(m_Rest.size());
     for (Eigen::Index v = 0; v < n; ++v)
     {
       moved[static_cast<std::size_t>(v)] =
@@ -102,12 +95,11 @@ private:
     return x;
   }
 
-  std::vector<Vector3>                                             m_Rest;
-  std::vector<std::array<IdType, 2>>                               m_Edges;
-  Vector3                                                          m_Centre;
-  double                                                           m_Scale;
-  bool                                                             m_Analyzed{ false };
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> m_Factor;
+  std::vector<Vector3>               m_Rest;
+  std::vector<std::array<IdType, 2>> m_Edges;
+  Vector3                            m_Centre;
+  double                             m_Scale;
+  SparseCholesky                     m_Factor;
 };
 } // namespace
 

@@ -4,8 +4,8 @@
 #include "boneSurfaceAlignment.h"
 
 #include "boneAcrossFit.h"
+#include "boneSymmetricEigen.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ PrincipalAxes(const TriangleSurface & surface)
   }
   centre /= sum;
   moment = moment / sum - centre * centre.transpose();
-  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment).eigenvectors();
+  Eigen::Matrix3d axes = EigenOf(moment).vectors;
   if (axes.determinant() < 0)
   {
     axes.col(0) = -axes.col(0);

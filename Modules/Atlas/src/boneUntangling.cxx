@@ -4,8 +4,8 @@
 #include "boneUntangling.h"
 
 #include "bonePredicates.h"
+#include "boneSymmetricEigen.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -228,10 +228,10 @@ private:
         hessian(i, j) = hessian(j, i) = (both - plus[i] - plus[j] + e) / (h * h);
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(hessian);
-    const double  largest = std::max(eigen.eigenvalues().cwiseAbs().maxCoeff(), 1e-12);
-    const Vector3 curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * largest);
-    Vector3       step = -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature);
+    const SymmetricEigenOf<3> eigen = EigenOf(hessian);
+    const double              largest = std::max(eigen.values.cwiseAbs().maxCoeff(), 1e-12);
+    const Vector3             curvature = eigen.values.cwiseAbs().cwiseMax(1e-6 * largest);
+    Vector3                   step = -eigen.vectors * (eigen.vectors.transpose() * gradient).cwiseQuotient(curvature);
     step *= std::min(1.0, size / std::max(step.norm(), 1e-300));
     for (int k = 0; k < Backtracks; ++k, step *= 0.5)
     {

@@ -3,7 +3,8 @@
  *=========================================================================*/
 #include "bonePlaneView.h"
 
-#include <Eigen/Eigenvalues>
+#include "boneSymmetricEigen.h"
+
 #include <Eigen/Geometry>
 
 #include <itkLinearInterpolateImageFunction.h>
@@ -68,8 +69,7 @@ FrameLargestCut(const std::vector<Vector3> & points, double margin, int pixels)
   {
     covariance += (p - mean) * (p - mean).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  return FramePlane(solver.eigenvectors().col(0), mean, points, margin, pixels);
+  return FramePlane(EigenOf(covariance).vectors.col(0), mean, points, margin, pixels);
 }
 
 CTImage::Pointer

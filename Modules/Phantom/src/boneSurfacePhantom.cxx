@@ -4,10 +4,9 @@
 #include "boneSurfacePhantom.h"
 
 #include "bonePhantomShapes.h"
+#include "boneSymmetricEigen.h"
 
 #include <itkMacro.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <limits>
@@ -70,9 +69,8 @@ SurfacePhantom::FindAxis()
     second += area * middle * middle.transpose();
   }
   mean /= total;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(second / total - mean * mean.transpose());
-  Vector3                                              direction = solver.eigenvectors().col(2);
-  int                                                  largest = 0;
+  Vector3 direction = EigenOf<3>(second / total - mean * mean.transpose()).vectors.col(2);
+  int     largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);
   direction *= direction[largest] < 0.0 ? -1.0 : 1.0;
 

@@ -3,7 +3,8 @@
  *=========================================================================*/
 #include "boneOwnFrame.h"
 
-#include <Eigen/Eigenvalues>
+#include "boneSymmetricEigen.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -50,13 +51,13 @@ OwnAxis(const ContourStack & stack)
   {
     spread += (q - mean) * (q - mean).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
-  const Vector2                                        values = axes.eigenvalues();
+  const SymmetricEigenOf<2> axes = EigenOf(spread);
+  const Vector2             values = axes.values;
   if (!(values[1] - values[0] > leastDifference * values[1]))
   {
     return stack.GetU();
   }
-  const Vector2 axis = axes.eigenvectors().col(1);
+  const Vector2 axis = axes.vectors.col(1);
   double        tail = 0.0;
   for (const Vector2 & q : points)
   {

@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneClosedBSpline.h"
 
-#include <Eigen/SparseCholesky>
+#include "boneSparseCholesky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ SolveControlPoints(const Polygon & points, const std::vector<double> & t, std::s
   // A whiff of stiffness (squared second differences) keeps the matrix regular where a span holds no point.
   const double stiffness = 1e-6 * static_cast<double>(points.size()) / static_cast<double>(m);
   band.rowwise() += stiffness * Eigen::RowVector4d(6.0, -4.0, 1.0, 0.0);
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<SparseEntry> entries;
   entries.reserve(7 * m);
   for (std::size_t r = 0; r < m; ++r)
   {
@@ -74,18 +74,17 @@ SolveControlPoints(const Polygon & points, const std::vector<double> & t, std::s
       const auto   row = static_cast<Eigen::Index>(r);
       const auto   column = static_cast<Eigen::Index>((r + d) % m);
       const double value = band(row, static_cast<Eigen::Index>(d));
-      entries.emplace_back(row, column, value);
+      entries.push_back({ row, column, value });
       if (d > 0)
       {
-        entries.emplace_back(column, row, value);
+        entries.push_back({ column, row, value });
       }
     }
   }
-  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(m));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  const Eigen::MatrixX2d                                   solution = solver.solve(right);
-  std::vector<Vector2>                                     control(m);
+  SparseCholesky factor;
+  factor.Factorize(static_cast<Eigen::Index>(m), entries);
+  const Eigen::MatrixXd solution = factor.Solve(right);
+  std::vector<Vector2>  control(m);
   for (std::size_t i = 0; i < m; ++i)
   {
     control[i] = solution.row(static_cast<Eigen::Index>(i)).transpose();

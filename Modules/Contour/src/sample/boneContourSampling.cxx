@@ -7,8 +7,7 @@
 #include "boneLayerDistance.h"
 #include "boneMedialAxis.h"
 #include "bonePlanarCrossing.h"
-
-#include <Eigen/Sparse>
+#include "boneSparseCholesky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,11 +89,11 @@ ShareAlong(LoopPlan & plan)
 Polygon
 FitChords(const std::vector<Vector2> & curve, const std::vector<double> & at)
 {
-  const auto                          n = static_cast<Eigen::Index>(at.size());
-  const std::size_t                   m = curve.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX2d                    right = Eigen::MatrixX2d::Zero(n, 2);
-  const auto                          point = [&](double s) {
+  const auto               n = static_cast<Eigen::Index>(at.size());
+  const std::size_t        m = curve.size();
+  std::vector<SparseEntry> entries;
+  Eigen::MatrixX2d         right = Eigen::MatrixX2d::Zero(n, 2);
+  const auto               point = [&](double s) {
     const double whole = std::floor(s);
     const auto   i = static_cast<std::size_t>(whole) % m;
     return Vector2(curve[i] + (s - whole) * (curve[(i + 1) % m] - curve[i]));
@@ -124,20 +123,19 @@ FitChords(const std::vector<Vector2> & curve, const std::vector<double> & at)
         const double  weight = (along[i] - along[i - 1]) * (node == 1 ? 4.0 : 1.0) / 6.0;
         const double  t = ((1.0 - share) * along[i - 1] + share * along[i]) / along.back();
         const Vector2 q = (1.0 - share) * piece[i - 1] + share * piece[i];
-        entries.emplace_back(k, k, weight * (1.0 - t) * (1.0 - t));
-        entries.emplace_back(k, next, weight * t * (1.0 - t));
-        entries.emplace_back(next, k, weight * t * (1.0 - t));
-        entries.emplace_back(next, next, weight * t * t);
+        entries.push_back({ k, k, weight * (1.0 - t) * (1.0 - t) });
+        entries.push_back({ k, next, weight * t * (1.0 - t) });
+        entries.push_back({ next, k, weight * t * (1.0 - t) });
+        entries.push_back({ next, next, weight * t * t });
         right.row(k) += weight * (1.0 - t) * q.transpose();
         right.row(next) += weight * t * q.transpose();
       }
     }
   }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  Polygon                                                  polygon;
-  const Eigen::MatrixX2d                                   corners = solver.solve(right);
+  SparseCholesky factor;
+  factor.Factorize(n, entries);
+  const Eigen::MatrixXd corners = factor.Solve(right);
+  Polygon               polygon;
   for (Eigen::Index k = 0; k < n; ++k)
   {
     polygon.emplace_back(corners.row(k).transpose());

@@ -9,15 +9,18 @@
 namespace bone
 {
 /** Eigenvalues of a symmetric matrix, ascending, and its eigenvectors as columns. */
-struct SymmetricEigen
+template <int VSize>
+struct SymmetricEigenOf
 {
-  Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;
+  Eigen::Matrix<double, VSize, 1>     values;
+  Eigen::Matrix<double, VSize, VSize> vectors;
 };
+using SymmetricEigen = SymmetricEigenOf<Eigen::Dynamic>;
 
-/** By Eigen's SelfAdjointEigenSolver, which is compiled here alone. */
-SymmetricEigen
-EigenOf(const Eigen::MatrixXd & symmetric);
+/** By Eigen's SelfAdjointEigenSolver, which is compiled here alone; it reads the lower triangle. */
+template <int VSize>
+SymmetricEigenOf<VSize>
+EigenOf(const Eigen::Matrix<double, VSize, VSize> & symmetric);
 } // namespace bone
 
 #endif

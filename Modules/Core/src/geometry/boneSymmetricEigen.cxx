@@ -7,10 +7,18 @@
 
 namespace bone
 {
-SymmetricEigen
-EigenOf(const Eigen::MatrixXd & symmetric)
+template <int VSize>
+SymmetricEigenOf<VSize>
+EigenOf(const Eigen::Matrix<double, VSize, VSize> & symmetric)
 {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, VSize, VSize>> eigen(symmetric);
   return { eigen.eigenvalues(), eigen.eigenvectors() };
 }
+
+template SymmetricEigenOf<2>
+EigenOf(const Eigen::Matrix2d & symmetric);
+template SymmetricEigenOf<3>
+EigenOf(const Eigen::Matrix3d & symmetric);
+template SymmetricEigen
+EigenOf(const Eigen::MatrixXd & symmetric);
 } // namespace bone

@@ -86,7 +86,7 @@ PrincipalModes::Posterior(const std::vector<Eigen::Index> & entries, const Eigen
   const Eigen::VectorXd             b = factor.solve(q.transpose() * residual);
   const Eigen::MatrixXd             scale = deviation.asDiagonal();
   const Eigen::MatrixXd             half = factor.matrixL().solve(scale);
-  const SymmetricEigen              eigen = EigenOf(half.transpose() * half);
+  const SymmetricEigen              eigen = EigenOf<Eigen::Dynamic>(half.transpose() * half);
 
   PrincipalModes posterior;
   posterior.mean = this->Synthesize(b);

@@ -3,7 +3,8 @@
  *=========================================================================*/
 #include "boneSurfaceBending.h"
 
-#include <Eigen/Sparse>
+#include "boneSparseCholesky.h"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -139,7 +140,7 @@ public:
         const double value = weight * factors[i] * factors[j];
         if (m_Place[points[j]] >= 0)
         {
-          m_Entries.emplace_back(row, m_Place[points[j]], value);
+          m_Entries.push_back({ row, m_Place[points[j]], value });
         }
         else
         {
@@ -157,11 +158,10 @@ public:
     {
       return result;
     }
-    Eigen::SparseMatrix<double> matrix(m_Right.rows(), m_Right.rows());
-    matrix.setFromTriplets(m_Entries.begin(), m_Entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    const Eigen::MatrixX3d                                   solution = solver.solve(m_Right);
-    if (solver.info() == Eigen::Success && solution.allFinite())
+    SparseCholesky        factor;
+    const bool            factorized = factor.Factorize(m_Right.rows(), m_Entries);
+    const Eigen::MatrixXd solution = factor.Solve(m_Right);
+    if (factorized && solution.allFinite())
     {
       for (std::size_t i = 0; i < m_Free.size(); ++i)
       {
@@ -172,11 +172,11 @@ public:
   }
 
 private:
-  const std::vector<Vector3> &        m_Points;
-  std::vector<int>                    m_Place; ///< of each point in the system, -1: it stays
-  std::vector<IdType>                 m_Free;
-  std::vector<Eigen::Triplet<double>> m_Entries;
-  Eigen::MatrixX3d                    m_Right;
+  const std::vector<Vector3> & m_Points;
+  std::vector<int>             m_Place; ///< of each point in the system, -1: it stays
+  std::vector<IdType>          m_Free;
+  std::vector<SparseEntry>     m_Entries;
+  Eigen::MatrixX3d             m_Right;
 };
 } // namespace
 
