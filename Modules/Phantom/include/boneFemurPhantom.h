@@ -84,8 +84,6 @@ public:
   EvaluateMaterials(const Vector3 & x, const Levels & levels) const override;
   Interval
   GetExtent(const Vector3 & direction) const override;
-  Axis
-  GetLongitudinalAxis() const override;
   bool
   GetOpenStart() const override
   {

@@ -73,8 +73,6 @@ public:
   EvaluateMaterials(const Vector3 & x, const Levels & levels) const override;
   Interval
   GetExtent(const Vector3 & direction) const override;
-  Axis
-  GetLongitudinalAxis() const override;
 
   const HemipelvisParameters &
   GetParameters() const

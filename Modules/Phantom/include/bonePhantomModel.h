@@ -86,9 +86,12 @@ public:
    * side. An open end counts up to where it is cut. */
   virtual Interval
   GetExtent(const Vector3 & direction) const = 0;
-  /** Long axis; the mean direction of a bone without shaft. */
+  /** Long axis; the mean direction of a bone without shaft. Here the z axis. */
   virtual Axis
-  GetLongitudinalAxis() const = 0;
+  GetLongitudinalAxis() const
+  {
+    return { Vector3::Zero(), Vector3::UnitZ() };
+  }
   /** True where the bone goes on beyond the lower (upper) end of its extent along the axis: a cut shaft. */
   virtual bool
   GetOpenStart() const

@@ -243,10 +243,4 @@ FemurPhantom::GetExtent(const Vector3 & direction) const
   interval.upper += down && direction.z() < 0.0 ? 0.0 : bulge;
   return interval;
 }
-
-PhantomModel::Axis
-FemurPhantom::GetLongitudinalAxis() const
-{
-  return { Vector3::Zero(), Vector3::UnitZ() };
-}
 } // namespace bone

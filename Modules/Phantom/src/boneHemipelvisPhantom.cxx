@@ -213,10 +213,4 @@ HemipelvisPhantom::GetExtent(const Vector3 & direction) const
   }
   return { interval.lower - bulge, interval.upper + bulge };
 }
-
-PhantomModel::Axis
-HemipelvisPhantom::GetLongitudinalAxis() const
-{
-  return { Vector3::Zero(), Vector3::UnitZ() };
-}
 } // namespace bone

@@ -8,32 +8,10 @@
 
 #include <itkImageRegionConstIterator.h>
 #include <itkImageRegionIterator.h>
-#include <itkUnaryFunctorImageFilter.h>
+#include <itkInPlaceImageFilter.h>
 
 namespace bone
 {
-/** The functor of AttenuationImageFilter. */
-template <typename TInput, typename TOutput>
-struct AttenuationFunctor
-{
-  AttenuationCurve curve;
-  TOutput
-  operator()(const TInput & value) const
-  {
-    return static_cast<TOutput>(curve.At(static_cast<double>(value)));
-  }
-  bool
-  operator==(const AttenuationFunctor & other) const
-  {
-    return curve == other.curve;
-  }
-  bool
-  operator!=(const AttenuationFunctor & other) const
-  {
-    return !(*this == other);
-  }
-};
-
 /** \class AttenuationImageFilter
  * \brief Converts a CT in HU to an image of attenuation per mm.
  *
@@ -42,28 +20,23 @@ struct AttenuationFunctor
  * Parameters: \ref RadiographParameters, and AttenuationTable, which HUToAttenuation::Table needs. Without conversion
  * the input goes through. */
 template <typename TInputImage, typename TOutputImage = itk::Image<float, 3>>
-class AttenuationImageFilter
-  : public itk::UnaryFunctorImageFilter<
-      TInputImage,
-      TOutputImage,
-      AttenuationFunctor<typename TInputImage::PixelType, typename TOutputImage::PixelType>>
+class AttenuationImageFilter : public itk::InPlaceImageFilter<TInputImage, TOutputImage>
 {
 public:
   ITK_DISALLOW_COPY_AND_MOVE(AttenuationImageFilter);
   using Self = AttenuationImageFilter;
-  using FunctorType = AttenuationFunctor<typename TInputImage::PixelType, typename TOutputImage::PixelType>;
-  using Superclass = itk::UnaryFunctorImageFilter<TInputImage, TOutputImage, FunctorType>;
+  using Superclass = itk::InPlaceImageFilter<TInputImage, TOutputImage>;
   using Pointer = itk::SmartPointer<Self>;
   using ConstPointer = itk::SmartPointer<const Self>;
   itkNewMacro(Self);
-  itkTypeMacro(AttenuationImageFilter, UnaryFunctorImageFilter);
+  itkTypeMacro(AttenuationImageFilter, InPlaceImageFilter);
 
   BONE_FILTER_PARAMETERS(RadiographParameters, BONE_RADIOGRAPH_PARAMETERS)
   itkSetMacro(AttenuationTable, std::vector<AttenuationPoint>);
   itkGetConstReferenceMacro(AttenuationTable, std::vector<AttenuationPoint>);
 
 protected:
-  AttenuationImageFilter() = default;
+  AttenuationImageFilter() { this->InPlaceOff(); }
   ~AttenuationImageFilter() override = default;
 
   void
@@ -80,16 +53,15 @@ protected:
   void
   BeforeThreadedGenerateData() override
   {
-    this->GetFunctor().curve = AttenuationCurve{ m_Parameters, m_AttenuationTable };
+    m_Curve = AttenuationCurve{ m_Parameters, m_AttenuationTable };
   }
-  /** Without the superclass's report of progress by pixels, which the threader reports too, by pieces. */
   void
   DynamicThreadedGenerateData(const typename TOutputImage::RegionType & region) override
   {
     itk::ImageRegionConstIterator<TInputImage> from(this->GetInput(), region);
     for (itk::ImageRegionIterator<TOutputImage> to(this->GetOutput(), region); !to.IsAtEnd(); ++to, ++from)
     {
-      to.Set(this->GetFunctor()(from.Get()));
+      to.Set(static_cast<typename TOutputImage::PixelType>(m_Curve.At(static_cast<double>(from.Get()))));
     }
   }
 
@@ -103,6 +75,7 @@ protected:
 
 private:
   std::vector<AttenuationPoint> m_AttenuationTable;
+  AttenuationCurve              m_Curve;
 };
 } // namespace bone
 
