@@ -2,7 +2,7 @@
 # Installs what is needed, builds a release and turns a CT into a density model with radiographs and a report:
 #
 #   Examples/run.sh                          the analytic femur phantom
-#   Examples/run.sh CT LABELS [LABEL]        a CT with a label map on its grid (LABEL: the bone's value, default any but 0)
+#   Examples/run.sh CT LABELS [LABEL]        a CT with a label map on its grid (LABEL: the bone's value, where it has several)
 #   Examples/run.sh CT CONTOURS              a CT with initial contours (.vtp, or .mrk.json of 3D Slicer)
 #
 # Results go to the folder out/ of the project. Running it again is quick.

@@ -3,11 +3,13 @@
  *=========================================================================*/
 #include "boneDescribe.h"
 
+#include "boneLabelValue.h"
 #include "boneQualityMeasures.h"
 
 #include <itkImageRegionConstIterator.h>
 #include <itkMath.h>
 
+#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <map>
@@ -52,6 +54,36 @@ Angles(const QualitySummary & summary)
   os << std::fixed << std::setprecision(1) << "least " << summary.minimum * degrees << ", 1st percentile "
      << summary.percentile1 * degrees << ", mean " << summary.mean * degrees << " degrees";
   return os.str();
+}
+
+/** A row for each label, where the image's values are few and whole. */
+void
+DescribeLabels(const CTImage & image, std::ostream & os)
+{
+  constexpr std::size_t        most = 256;
+  std::map<float, std::size_t> counts;
+  for (itk::ImageRegionConstIterator<CTImage> it(&image, image.GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  {
+    ++counts[it.Get()];
+    if (counts.size() > most || it.Get() != std::floor(it.Get()))
+    {
+      return;
+    }
+  }
+  const auto   spacing = image.GetSpacing();
+  const double voxel = 1e-3 * spacing[0] * spacing[1] * spacing[2];
+  counts.erase(0.0F);
+  for (const auto & [value, voxels] : counts)
+  {
+    std::ostringstream text;
+    text << voxels << " voxels, " << std::fixed << std::setprecision(1) << voxel * static_cast<double>(voxels)
+         << " cm^3";
+    Row(os, "label " + std::to_string(static_cast<int>(value)), text.str());
+  }
+  if (StatesOneBone(image))
+  {
+    Row(os, "labels are", "regions of one bone");
+  }
 }
 } // namespace
 
@@ -200,6 +232,7 @@ DescribeImage(const CTImage & image)
   }
   os << std::left << std::setw(28) << "values" << least << " to " << largest << ", mean "
      << sum / static_cast<double>(image.GetLargestPossibleRegion().GetNumberOfPixels()) << '\n';
+  DescribeLabels(image, os);
   return os.str();
 }
 std::string

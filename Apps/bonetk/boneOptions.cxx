@@ -4,9 +4,13 @@
 #include "boneOptions.h"
 
 #include "boneContourIO.h"
+#include "boneIOError.h"
+#include "boneLabelCrop.h"
 
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <sstream>
 
 namespace bone
@@ -28,7 +32,48 @@ NumberWhere(TPredicate predicate, const std::string & description)
     },
     std::string());
 }
+
+/** Zeros before a whole number, by which CLI11 would take it for octal, are taken away. A word is another's to judge:
+ * that of a choice. */
+std::string
+ToDecimal(std::string & text)
+{
+  static const std::regex whole("([+-]?)0*([0-9]+)");
+  if (!std::regex_match(text, whole))
+  {
+    return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 ? "" : text + " is no whole number";
+  }
+  text = std::regex_replace(text, whole, "$1$2");
+  return "";
+}
+
+std::string
+CheckDecimal(std::string & text)
+{
+  static const std::regex number("[+-]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?");
+  return std::regex_match(text, number) ? "" : text + " is no number";
+}
 } // namespace
+
+void
+ReadDecimalNumbers(CLI::App & app)
+{
+  for (CLI::App * command : app.get_subcommands([](CLI::App *) { return true; }))
+  {
+    for (CLI::Option * option : command->get_options())
+    {
+      const std::string type = option->get_type_name();
+      if (type == "INT" || type == "UINT")
+      {
+        option->transform(CLI::Validator(ToDecimal, ""));
+      }
+      else if (type == "FLOAT")
+      {
+        option->transform(CLI::Validator(CheckDecimal, ""));
+      }
+    }
+  }
+}
 
 CLI::Validator
 Positive()
@@ -71,13 +116,28 @@ BoneOptions::Verify() const
   }
 }
 
+LabelImage::Pointer
+ReadBoneLabels(const std::string & path, int label)
+{
+  const LabelImage::Pointer labels = ReadLabels(path);
+  try
+  {
+    VerifyOneBone(labels, label);
+  }
+  catch (const itk::ExceptionObject & error)
+  {
+    throw UsageError(path + ": " + ErrorLine(error) + " Choose one with --label");
+  }
+  return labels;
+}
+
 BoneInput
 ReadBone(const BoneOptions & options, int label, unsigned int axis)
 {
   BoneInput input;
   if (!options.labels.empty())
   {
-    input.labels = ReadLabels(options.labels);
+    input.labels = ReadBoneLabels(options.labels, label);
   }
   if (!options.init.empty())
   {

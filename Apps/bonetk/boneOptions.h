@@ -25,6 +25,11 @@ CLI::Validator
 Between(double lower, double upper);
 /** \} */
 
+/** Numbers of every option of the program's commands are decimal and all of their text: 010 is ten, 0x8 none. To be
+ * called when all options are there. */
+void
+ReadDecimalNumbers(CLI::App & app);
+
 /** Where the bone is: a label map, initial contours, or both. */
 struct BoneOptions
 {
@@ -39,6 +44,11 @@ struct BoneOptions
   void
   Verify() const;
 };
+
+/** A label map with one bone in it. Throws UsageError that lists its labels where it has several and `label` is 0,
+ * unless it states that they are regions of one bone. */
+LabelImage::Pointer
+ReadBoneLabels(const std::string & path, int label);
 
 /** What BoneOptions name, read; null where not given. */
 struct BoneInput

@@ -31,6 +31,16 @@ OptionHelp(const ParameterField & field, const std::string & text);
 [[noreturn]] void
 RefuseOption(const ParameterField & field, const std::string & reason);
 
+/** Whether `text`, all of it, is a decimal number. */
+template <typename T>
+bool
+ParseNumber(const std::string & text, T & number)
+{
+  const char * end = text.data() + text.size();
+  const auto   parsed = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, number);
+  return parsed.ec == std::errc() && parsed.ptr == end;
+}
+
 /** The number that `text` is, all of it, in decimal. Throws CLI::ValidationError where it is none, or out of range. */
 template <typename T>
 T
@@ -49,10 +59,8 @@ ParseOption(const ParameterField & field, const std::string & text)
   }
   else
   {
-    T            number{};
-    const char * end = text.data() + text.size();
-    const auto   parsed = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, number);
-    if (parsed.ec != std::errc() || parsed.ptr != end)
+    T number{};
+    if (!ParseNumber(text, number))
     {
       RefuseOption(field, text + " is no " + (std::is_integral_v<T> ? "whole number" : "number"));
     }

@@ -9,7 +9,9 @@
 #include <itkOutputWindow.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <regex>
 
@@ -74,15 +76,40 @@ Session::~Session()
 void
 Session::Print(const std::string & text)
 {
-  if (!quiet)
+  if (!quiet && m_PrintError == 0)
   {
     this->ClearProgress();
-    std::cout << text << std::flush;
+    errno = 0;
+    if (!(std::cout << text << std::flush))
+    {
+      m_PrintError = errno == 0 ? EIO : errno;
+    }
+  }
+}
+
+void
+Session::Finish() const
+{
+  if (m_PrintError != 0 && m_PrintError != EPIPE)
+  {
+    throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(m_PrintError));
   }
 }
 
 void
 Session::Warn(const std::string & message)
+{
+  this->Warn(message, !quiet);
+}
+
+void
+Session::WarnAlways(const std::string & message)
+{
+  this->Warn(message, true);
+}
+
+void
+Session::Warn(const std::string & message, bool shown)
 {
   const std::lock_guard<std::mutex> lock(m_Mutex);
   if (std::find(m_Warnings.begin(), m_Warnings.end(), message) != m_Warnings.end())
@@ -90,7 +117,7 @@ Session::Warn(const std::string & message)
     return;
   }
   m_Warnings.push_back(message);
-  if (!quiet)
+  if (shown)
   {
     this->ClearProgress();
     std::cerr << "bonetk " << command << ": warning: " << message << std::endl;

@@ -17,7 +17,8 @@ namespace bone
  * \brief One run of a command: where its text goes, and what it warned of.
  *
  * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
- * errors. Warnings of ITK filters become lines of this session too. */
+ * errors and warnings that the result is not what was asked for. Warnings of ITK filters become lines of this session
+ * too. */
 class Session
 {
 public:
@@ -42,9 +43,18 @@ public:
   void
   Warn(const std::string & message);
 
+  /** The same, quiet or not: the result is not what was asked for. */
+  void
+  WarnAlways(const std::string & message);
+
   /** "bonetk COMMAND: message" on standard error, quiet or not. */
   void
   Fail(const std::string & message);
+
+  /** To be called at the end. Throws std::runtime_error where text for standard output was lost, as on a full disk. One
+   * that nobody reads any more is no error: they have seen what they wanted. */
+  void
+  Finish() const;
 
   const std::vector<std::string> &
   GetWarnings() const
@@ -58,6 +68,8 @@ public:
 
 private:
   void
+  Warn(const std::string & message, bool shown);
+  void
   ShowProgress(const std::string & name, double share);
   void
   ClearProgress();
@@ -67,6 +79,7 @@ private:
   std::chrono::steady_clock::time_point m_Start;
   bool                                  m_Terminal;
   std::string                           m_Shown;
+  int                                   m_PrintError{ 0 }; ///< of errno
 };
 
 /** A usage error found after parsing: exit code 2. */

@@ -3,7 +3,9 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneIOError.h"
-#include "boneStagingFolder.h"
+#include "boneOptions.h"
+#include "boneOutputTransaction.h"
+#include "boneSignals.h"
 
 #include <itkMultiThreaderBase.h>
 
@@ -23,7 +25,8 @@ AddSharedOptions(CLI::App & app, bone::Session & session)
 {
   for (CLI::App * command : app.get_subcommands([](const CLI::App *) { return true; }))
   {
-    command->add_flag("-q,--quiet", session.quiet, "Print nothing but errors");
+    command->add_flag(
+      "-q,--quiet", session.quiet, "Print errors, and warnings that the result is not what was asked for, alone");
     command
       ->add_option("--threads", session.threads, "Number of threads; default: all processors. Does not change results")
       ->check(CLI::Range(1, 1024).description(""));
@@ -59,12 +62,16 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   }
 }
 
+/** Does the work: its outputs appear together or not at all. */
 int
 Run(const bone::Action & action, bone::Session & session)
 {
   try
   {
+    bone::OutputTransaction outputs;
     action(session);
+    outputs.Commit();
+    session.Finish();
     return Success;
   }
   catch (const bone::UsageError & error)
@@ -117,6 +124,7 @@ main(int argc, char ** argv)
   bone::AddValidateCommand(app, action);
   bone::AddInfoCommand(app, action);
   AddSharedOptions(app, session);
+  bone::ReadDecimalNumbers(app);
 
   int exitCode = Success;
   if (!Parse(app, argc, argv, session, exitCode))
@@ -129,6 +137,6 @@ main(int argc, char ** argv)
     itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
   }
   exitCode = Run(action, session);
-  bone::FinishSignalHandling();
+  bone::OutputTransaction::FinishAll();
   return exitCode;
 }

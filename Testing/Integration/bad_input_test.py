@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Bad input gives one clear line, exit code 1 and no output; bad usage exit code 2."""
+import re
+
 import numpy
 
 from bonetk_testing import TestCase, bonetk, main, write_image
@@ -76,6 +78,17 @@ class BadInput(TestCase):
         self.refuse("build", "ct.nii.gz", "--labels", "labels.nii.gz", "--label", 7, "-o", "out", says="label 7")
         self.refuse("contours", "ct.nii.gz", "--labels", "labels.nii.gz", "--label", 7, "-o", "out.vtp", says="7")
 
+    def test_several_bones_and_none_chosen(self):
+        self.labels[:4, :4, :4] = 5
+        write_image("two.nii.gz", self.labels)
+        for command in (["build", "ct.nii.gz", "--labels", "two.nii.gz", "-o", "out", "--quiet"],
+                        ["contours", "ct.nii.gz", "--labels", "two.nii.gz", "-o", "out.vtp"],
+                        ["crop", "ct.nii.gz", "--labels", "two.nii.gz", "-o", "out.mha"]):
+            self.refuse_usage(*command, says="5 (64 voxels, 0.1 cm^3)")
+        self.succeed("contours", "ct.nii.gz", "--labels", "two.nii.gz", "--label", 1, "-o", "out.vtp")
+        out, _ = self.succeed("info", "two.nii.gz")
+        self.assertIn("64 voxels, 0.1 cm^3", out)
+
     def test_image_of_one_slice(self):
         write_image("slice.nii.gz", numpy.full((32, 32, 1), 100, numpy.int16))
         self.refuse_ct("slice.nii.gz", "slice")
@@ -114,8 +127,30 @@ class BadInput(TestCase):
 
 
 class BadUsage(TestCase):
-    def refuse_usage(self, *arguments, says=""):
-        self.refuse(*arguments, code=2, says=says)
+    def test_every_number_is_decimal(self):
+        """Of every numeric option of every command: hexadecimal and trailing characters are refused."""
+        numeric = 0
+        _, help_text, _ = bonetk("--help")
+        commands = re.findall(r"^  (\w+) ", help_text[help_text.index("Subcommands"):], re.MULTILINE)
+        self.assertGreater(len(commands), 14)
+        for command in commands:
+            _, text, _ = bonetk(command, "--help")
+            for option in re.findall(r"^ +(?:-\w,)?(--[\w-]+) (?:INT|UINT|FLOAT|NUMBER)", text, re.MULTILINE):
+                numeric += 1
+                for wrong in ("0x8", "8x", "1e", "eight", ""):
+                    code, _, err = bonetk(command, f"{option}={wrong}")
+                    self.assertEqual(code, 2, (command, option, wrong, err))
+                    self.assertIn(option, err)
+                    if wrong:
+                        self.assertRegex(err, "no (whole )?number|not a number|is not|not in range|required|Could not convert", (command, option, wrong))
+        self.assertGreater(numeric, 50)
+
+    def test_zeros_before_a_number_are_nothing(self):
+        for subject in ("010", "10"):
+            self.succeed("phantom", "--spacing", 4, "--noise", 10, "--subject", subject, "-o", f"p{subject}.mha")
+        with open("p010.mha", "rb") as a, open("p10.mha", "rb") as b:
+            self.assertEqual(a.read(), b.read())
+        self.succeed("phantom", "--spacing", "08", "--subject", "008", "-o", "p008.mha")
 
     def test_usage_errors(self):
         self.refuse_usage()

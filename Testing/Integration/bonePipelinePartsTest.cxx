@@ -1,7 +1,9 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneBuildReport.h"
 #include "boneLabelCrop.h"
+#include "boneLabelValue.h"
 #include "boneCanvas.h"
 #include "boneMeshImageMetrics.h"
 #include "bonePlaneView.h"
@@ -93,6 +95,54 @@ TEST(BoneImage, AnotherGridIsRefused)
   EXPECT_THROW(bone::VerifySameGrid(ct, MakeBox()), itk::ExceptionObject);
   ct->CopyInformation(MakeBox());
   EXPECT_NO_THROW(bone::VerifySameGrid(ct, MakeBox()));
+}
+
+TEST(LabelCrop, BonesAreNotJoinedWithoutBeingToldTo)
+{
+  const auto labels = MakeBox();
+  EXPECT_NO_THROW(bone::VerifyOneBone(labels, 0)); // its only one
+  labels->SetPixel({ { 0, 0, 0 } }, 7);
+  const auto counts = bone::CountLabels(labels);
+  ASSERT_EQ(counts.size(), 2U);
+  EXPECT_EQ(counts[0].value, 3);
+  EXPECT_EQ(counts[0].voxels, 144U);
+  EXPECT_DOUBLE_EQ(counts[0].volume, 144.0);
+  EXPECT_EQ(counts[1].value, 7);
+  EXPECT_EQ(counts[1].voxels, 1U);
+  EXPECT_NO_THROW(bone::VerifyOneBone(labels, 3));
+  try
+  {
+    bone::VerifyOneBone(labels, 0);
+    FAIL() << "two bones were taken for one";
+  }
+  catch (const itk::ExceptionObject & error)
+  {
+    EXPECT_NE(std::string(error.GetDescription()).find("3 (144 voxels, 0.1 cm^3), 7 (1 voxels"), std::string::npos)
+      << error.GetDescription();
+  }
+  bone::StateOneBone(*labels);
+  EXPECT_NO_THROW(bone::VerifyOneBone(labels, 0));
+  EXPECT_TRUE(bone::StatesOneBone(*bone::Crop(labels, bone::MeasureLabel(labels, 3).region)));
+}
+
+TEST(Doubts, TellWhereABuildIsNotWhatWasAskedFor)
+{
+  bone::BuildPlanParameters plan;
+  plan.tetrahedra = 1000;
+  plan.levels = { 200 };
+  std::vector<bone::LevelReport> levels(2);
+  levels[0].tetrahedra = 1080;
+  levels[0].dice = 0.91;
+  levels[1].tetrahedra = 200;
+  EXPECT_TRUE(bone::FindDoubts(plan, levels).empty());
+  levels[0].dice = 0.89;
+  EXPECT_EQ(bone::FindDoubts(plan, levels).size(), 1U);
+  levels[1].tetrahedra = 230;
+  EXPECT_EQ(bone::FindDoubts(plan, levels).size(), 2U);
+  levels[0].tetrahedra = 1200;
+  EXPECT_EQ(bone::FindDoubts(plan, levels).size(), 3U);
+  plan.sliceStep = plan.contourSpacing = 2.0; // then the number is not sought
+  EXPECT_EQ(bone::FindDoubts(plan, levels).size(), 2U);
 }
 
 TEST(MeshImageMetrics, MeshOnTheLabelsFacesIsAtDistanceZero)

@@ -67,6 +67,9 @@ class TestCase(unittest.TestCase):
         self.assertEqual(sorted(os.listdir()), files, f"bonetk {arguments} left something behind")
         return err
 
+    def refuse_usage(self, *arguments, says=""):
+        return self.refuse(*arguments, code=2, says=says)
+
 
 def main():
     unittest.main(argv=[sys.argv[0], "-v"])

@@ -164,7 +164,7 @@ class Commands(TestCase):
         few = numpy.asarray(whole.dataobj).copy()
         marked = [few.shape[2] // 8, few.shape[2] // 3]
         few[:, :, [k for k in range(few.shape[2]) if k not in marked]] = 0
-        nibabel.save(nibabel.Nifti1Image(few, whole.affine), "few.nii.gz")
+        nibabel.save(nibabel.Nifti1Image(few, whole.affine, whole.header), "few.nii.gz")
         self.succeed("contours", "ct.nii.gz", "--labels", "few.nii.gz", "--follow", "--slice-step", 3, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 3, "-o", "all.vtp")

@@ -16,6 +16,7 @@
 
 #include <chrono>
 #include <exception>
+#include <regex>
 #include <sstream>
 
 namespace bone
@@ -76,7 +77,8 @@ WriteOutputs(const Evaluation &  evaluation,
   WriteImage(evaluation.radiographs, in("radiographs.png"));
   WriteFileAtomically(in("report.txt"), ToText(report));
   WriteFileAtomically(in("report.json"), ToJson(report));
-  staging.Commit();
+  static const std::regex ofALevel("(model|drr)_L[0-9]+\\.(vtu|mha)");
+  staging.Commit([](const std::string & name) { return std::regex_match(name, ofALevel); });
 }
 
 /** Finds the resolution, telling of each trial; the quality stage is then up to date. */
@@ -159,6 +161,10 @@ RunBuild(const BuildOptions & options, Session & session)
   report.meanSliceDistance = slices->GetMeanSliceDistance();
   report.tiling = pipeline.GetTiling()->GetReport();
   report.levels = evaluation.levels;
+  for (const std::string & doubt : FindDoubts(plan, report.levels))
+  {
+    session.WarnAlways(doubt);
+  }
   report.warnings = session.GetWarnings();
   WriteOutputs(evaluation, report, pipeline, staging);
   session.Print("\n" + ToText(report) + "\nwritten to " + options.output + "\n");

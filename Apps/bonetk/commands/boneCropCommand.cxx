@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneOptions.h"
 #include "boneParameterOptions.h"
 
 #include "boneBuildPlan.h"
@@ -22,7 +23,9 @@ struct CropOptions
 void
 RunCrop(const CropOptions & options, Session &)
 {
-  const BuildInput input = CropToBone(ReadCT(options.ct), ReadLabels(options.labels), nullptr, options.plan);
+  const CTImage::Pointer    ct = ReadCT(options.ct);
+  const LabelImage::Pointer labels = ReadBoneLabels(options.labels, options.plan.label);
+  const BuildInput          input = CropToBone(ct, labels, nullptr, options.plan);
   WriteImage(input.ct, options.output);
   if (!options.labelsOutput.empty())
   {

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
+#include "boneParameterOptions.h"
 
 #include "boneUntangling.h"
 #include "boneMeshIO.h"
@@ -38,8 +39,8 @@ Coefficients(const std::vector<std::string> & settings, Eigen::Index modes, cons
     const auto equals = setting.find('=');
     long       mode = 0;
     double     value = std::nan("");
-    if (equals == std::string::npos || !CLI::detail::lexical_cast(setting.substr(0, equals), mode) ||
-        !CLI::detail::lexical_cast(setting.substr(equals + 1), value) || !std::isfinite(value) || mode < 1)
+    if (equals == std::string::npos || !ParseNumber(setting.substr(0, equals), mode) ||
+        !ParseNumber(setting.substr(equals + 1), value) || !std::isfinite(value) || mode < 1)
     {
       throw UsageError(option + " " + setting + " must be MODE=STANDARD_DEVIATIONS, such as 1=-2.5");
     }

@@ -45,7 +45,7 @@ MakeQuality(const SmoothOptions & options)
   }
   if (!options.labels.empty())
   {
-    const LabelImage::Pointer labels = ReadLabels(options.labels);
+    const LabelImage::Pointer labels = ReadBoneLabels(options.labels, options.quality.label);
     quality->SetLabelImage(labels);
     if (!options.distance)
     {

@@ -60,6 +60,12 @@ struct BuildReport
 LevelReport
 DescribeLevel(const MeshArrays & mesh);
 
+/** Where a build is not what was asked for, a sentence each: a Dice overlap with the label below 0.9; a number of
+ * tetrahedra more than a tenth from the plan's, which is not sought where the plan gives both slice step and spacing.
+ */
+std::vector<std::string>
+FindDoubts(const BuildPlanParameters & plan, const std::vector<LevelReport> & levels);
+
 /** The report as a table. */
 std::string
 ToText(const BuildReport & report);

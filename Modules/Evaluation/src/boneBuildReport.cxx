@@ -3,12 +3,14 @@
  *=========================================================================*/
 #include "boneBuildReport.h"
 
+#include "boneBuildPlan.h"
 #include "boneMeshValidator.h"
 
 #include <itkMath.h>
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <functional>
 #include <iomanip>
 #include <sstream>
@@ -142,6 +144,35 @@ ToJson(const LevelReport & level)
   return json;
 }
 } // namespace
+
+std::vector<std::string>
+FindDoubts(const BuildPlanParameters & plan, const std::vector<LevelReport> & levels)
+{
+  constexpr double         leastDice = 0.9, share = 0.1;
+  std::vector<std::string> doubts;
+  if (levels.empty())
+  {
+    return doubts;
+  }
+  auto asked = CountTetrahedraOfLevels(plan.levels, static_cast<IdType>(levels[0].tetrahedra));
+  asked.insert(asked.begin(), plan.sliceStep > 0.0 && plan.contourSpacing > 0.0 ? 0 : plan.tetrahedra);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    const std::string level = "level " + std::to_string(i + 1);
+    if (levels[i].dice && !(*levels[i].dice >= leastDice))
+    {
+      doubts.push_back(level + " overlaps the label with a Dice of " + Fixed(*levels[i].dice, 3) +
+                       " only: is the label one bone, and are its slices close enough?");
+    }
+    const double count = static_cast<double>(levels[i].tetrahedra);
+    if (i < asked.size() && asked[i] > 0 && std::abs(count - asked[i]) > share * asked[i])
+    {
+      doubts.push_back(level + " has " + std::to_string(levels[i].tetrahedra) + " tetrahedra where " +
+                       std::to_string(asked[i]) + " were asked for");
+    }
+  }
+  return doubts;
+}
 
 LevelReport
 DescribeLevel(const MeshArrays & mesh)

@@ -16,7 +16,7 @@ namespace bone
  * The content is written to GetTemporaryPath(), which has the final file's name and lies in a new hidden folder
  * `.bonetk-tmp-XXXXXX` beside it, so that writers that choose the format by the extension, or that put a second file
  * beside the first (`.mhd` and `.raw`), work as ever. Commit() flushes to the disk and renames; companion files are
- * renamed before the named one. Without Commit() the destructor removes everything. A symbolic link is followed and
+ * renamed before the named one. Without Commit() everything is removed at the end. A symbolic link is followed and
  * stays. Not thread-safe per object; different objects may be used at the same time.
  *
  * Throws IOError where the folder does not exist or cannot be written to, or the path names anything but a regular
@@ -25,10 +25,10 @@ class AtomicFile
 {
 public:
   explicit AtomicFile(const std::string & path);
-  ~AtomicFile();
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &
   operator=(const AtomicFile &) = delete;
+  ~AtomicFile() = default;
 
   /** The final name, as given. */
   const std::string &
@@ -48,25 +48,20 @@ public:
   void
   Write(const std::string & content);
 
-  /** Puts the written file in its place. Throws IOError, and leaves the former file as it was, where nothing or an
-   * empty file was written or the disk is full. */
+  /** Puts the written file in its place, with the mode of the file that it replaces; where an \ref OutputTransaction
+   * lives, when that is committed. Throws IOError, and leaves the former file as it was, where nothing or an empty file
+   * was written or the disk is full. */
   void
   Commit();
 
 private:
   struct Pending;
+  struct Temporary;
 
-  std::vector<std::string>
-  WrittenFiles() const;
-  void
-  Discard() noexcept;
-
-  std::string              m_Path;          // as given, for messages
-  std::string              m_Target;        // links resolved
-  std::string              m_Folder;        // temporary folder
-  std::string              m_TemporaryPath; // in that folder
-  std::unique_ptr<Pending> m_Pending;
-  int                      m_Slot{ -1 };
+  std::string                m_Path;   // as given, for messages
+  std::string                m_Target; // absolute, links resolved
+  std::string                m_TemporaryPath;
+  std::shared_ptr<Temporary> m_Temporary; // until Commit()
 
   friend void
   RemovePendingTemporaries() noexcept;

@@ -24,6 +24,7 @@ constexpr const char * Degree = "Degree";
 constexpr const char * DensityCoefficients = "DensityCoefficients";
 constexpr const char * FaceNeighbors = "FaceNeighbors";
 constexpr const char * DensityQuantity = "DensityQuantity";
+constexpr const char * MeanDensity = "MeanDensity";
 constexpr const char * Density = "Density";
 } // namespace ArrayNames
 
@@ -34,7 +35,8 @@ using ItkMesh = itk::Mesh<double, 3>;
  * \{ */
 
 /** Points in double, linear tetrahedra, and the arrays named above as far as the mesh has them; with a density also
- * `Density`, the value at each point, mean over its tetrahedra. Throws itk::ExceptionObject where an attribute is not
+ * `MeanDensity`, the exact mean over each tetrahedron, as the active scalars, and `Density`, the value at each point
+ * within the innermost region that meets there. Throws itk::ExceptionObject where an attribute is not
  * of full length. */
 vtkSmartPointer<vtkUnstructuredGrid>
 ToVtkUnstructuredGrid(const MeshArrays & mesh);

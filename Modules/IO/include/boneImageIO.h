@@ -27,7 +27,8 @@ using PictureImage = itk::Image<itk::RGBPixel<unsigned char>, 2>;
 CTImage::Pointer
 ReadCT(const std::string & path);
 
-/** The same for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. */
+/** The same for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. What its header
+ * says of its labels (\ref StatesOneBone) is kept. */
 LabelImage::Pointer
 ReadLabels(const std::string & path);
 

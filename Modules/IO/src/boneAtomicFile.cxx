@@ -4,6 +4,7 @@
 #include "boneAtomicFile.h"
 
 #include "boneIOError.h"
+#include "boneOutputTransaction.h"
 
 #include <algorithm>
 #include <array>
@@ -81,6 +82,79 @@ RequireRegularFile(const std::string & path, const fs::path & target)
 }
 } // namespace
 
+struct AtomicFile::Temporary
+{
+  std::string              folder;
+  std::string              file; ///< in the folder
+  std::unique_ptr<Pending> pending;
+  int                      slot{ -1 };
+
+  Temporary(const std::string & path, const fs::path & target);
+  ~Temporary();
+  Temporary(const Temporary &) = delete;
+  Temporary &
+  operator=(const Temporary &) = delete;
+
+  /** The files written, the named one last: a reader that finds it finds its companions. */
+  std::vector<std::string>
+  GetFiles() const;
+};
+
+AtomicFile::Temporary::Temporary(const std::string & path, const fs::path & target)
+{
+  const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  folder = (parent / ".bonetk-tmp-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr)
+  {
+    throw IOError(path, "cannot write into the folder '" + parent.string() + "': " + ErrorText(errno));
+  }
+  file = (fs::path(folder) / target.filename()).string();
+  pending = std::make_unique<Pending>();
+  pending->folder = folder;
+  pending->files.push_back(file);
+  for (const char * extension : CompanionExtensions)
+  {
+    pending->files.push_back(fs::path(file).replace_extension(extension).string());
+  }
+  for (int i = 0; i < NumberOfSlots && slot < 0; ++i)
+  {
+    const void * expected = nullptr;
+    if (Slots[i].compare_exchange_strong(expected, pending.get()))
+    {
+      slot = i;
+    }
+  }
+}
+
+AtomicFile::Temporary::~Temporary()
+{
+  if (slot >= 0 && Slots[slot].exchange(nullptr) == nullptr)
+  {
+    // The handler has the names and may be reading them still: they stay to the end of the process.
+    static std::mutex                            mutex;
+    static std::vector<std::unique_ptr<Pending>> kept;
+    const std::lock_guard<std::mutex>            lock(mutex);
+    kept.push_back(std::move(pending));
+  }
+  std::error_code error;
+  fs::remove_all(folder, error);
+}
+
+std::vector<std::string>
+AtomicFile::Temporary::GetFiles() const
+{
+  std::vector<std::string> files;
+  std::error_code          error;
+  for (const auto & entry : fs::directory_iterator(folder, error))
+  {
+    files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end(), [this](const std::string & a, const std::string & b) {
+    return (a == file) != (b == file) ? b == file : a < b;
+  });
+  return files;
+}
+
 AtomicFile::AtomicFile(const std::string & path)
   : m_Path(path)
 {
@@ -100,97 +174,31 @@ AtomicFile::AtomicFile(const std::string & path)
   {
     throw IOError(path, "cannot write: there is no folder '" + folder.string() + "'");
   }
-  std::string name = (folder / ".bonetk-tmp-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-  {
-    throw IOError(path, "cannot write into the folder '" + folder.string() + "': " + ErrorText(errno));
-  }
-  m_Target = target.string();
-  m_Folder = name;
-  m_TemporaryPath = (fs::path(name) / target.filename()).string();
-
-  m_Pending = std::make_unique<Pending>();
-  m_Pending->folder = m_Folder;
-  m_Pending->files.push_back(m_TemporaryPath);
-  for (const char * extension : CompanionExtensions)
-  {
-    m_Pending->files.push_back(fs::path(m_TemporaryPath).replace_extension(extension).string());
-  }
-  for (int slot = 0; slot < NumberOfSlots && m_Slot < 0; ++slot)
-  {
-    const void * expected = nullptr;
-    if (Slots[slot].compare_exchange_strong(expected, m_Pending.get()))
-    {
-      m_Slot = slot;
-    }
-  }
-}
-
-AtomicFile::~AtomicFile()
-{
-  this->Discard();
-}
-
-void
-AtomicFile::Discard() noexcept
-{
-  if (m_Slot >= 0 && Slots[m_Slot].exchange(nullptr) == nullptr)
-  {
-    // The handler has the names and may be reading them still: they stay to the end of the process.
-    static std::mutex                            mutex;
-    static std::vector<std::unique_ptr<Pending>> kept;
-    const std::lock_guard<std::mutex>            lock(mutex);
-    kept.push_back(std::move(m_Pending));
-  }
-  m_Slot = -1;
-  if (!m_Folder.empty())
-  {
-    std::error_code error;
-    fs::remove_all(m_Folder, error);
-    m_Folder.clear();
-  }
-}
-
-std::vector<std::string>
-AtomicFile::WrittenFiles() const
-{
-  std::vector<std::string> files;
-  std::error_code          error;
-  for (const auto & entry : fs::directory_iterator(m_Folder, error))
-  {
-    files.push_back(entry.path().string());
-  }
-  // The named file last: a reader that finds it finds its companions.
-  std::sort(files.begin(), files.end(), [this](const std::string & a, const std::string & b) {
-    return (a == m_TemporaryPath) != (b == m_TemporaryPath) ? b == m_TemporaryPath : a < b;
-  });
-  return files;
+  m_Target = fs::absolute(target).lexically_normal().string();
+  m_Temporary = std::make_shared<Temporary>(path, target);
+  m_TemporaryPath = m_Temporary->file;
 }
 
 void
 AtomicFile::Commit()
 {
-  const auto      files = this->WrittenFiles();
   std::error_code error;
-  const auto      size = fs::file_size(m_TemporaryPath, error);
+  const auto      size = fs::file_size(m_Temporary->file, error);
   if (error || size == 0)
   {
     throw IOError(m_Path, "cannot write: nothing reached the disk (is it full?)");
   }
-  for (const auto & file : files)
+  const fs::path                       folder = fs::path(m_Target).parent_path();
+  std::vector<OutputTransaction::Move> moves;
+  for (const std::string & file : m_Temporary->GetFiles())
   {
     Flush(m_Path, file);
+    const std::string name = fs::path(file).filename().string();
+    const std::string to = file == m_Temporary->file ? m_Target : (folder / name).string();
+    moves.push_back({ m_Path, file, to, (fs::path(m_Temporary->folder) / (".former-" + name)).string() });
   }
-  const fs::path folder = fs::path(m_Target).parent_path();
-  for (const auto & file : files)
-  {
-    const fs::path to = file == m_TemporaryPath ? fs::path(m_Target) : folder / fs::path(file).filename();
-    if (::rename(file.c_str(), to.c_str()) != 0)
-    {
-      throw IOError(m_Path, "cannot write: " + ErrorText(errno));
-    }
-  }
-  this->Discard();
+  OutputTransaction::Take(moves, {}, m_Temporary);
+  m_Temporary.reset();
 }
 
 void

@@ -7,10 +7,13 @@
 #include "boneConversions.h"
 #include "boneJson.h"
 #include "boneMeshIO.h"
+#include "boneOutputTransaction.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -84,6 +87,25 @@ ToLevel(const json & object, const fs::path & folder, const Level * before)
                                    before == nullptr);
   return level;
 }
+/** The levels of the hierarchy under this name that are not among `paths`, which replace it. */
+std::vector<std::string>
+FormerLevels(const std::string & jsonPath, const std::vector<std::string> & paths)
+{
+  std::vector<std::string> files;
+  const json               former = json::parse(std::ifstream(jsonPath), nullptr, false);
+  for (const json & level : former.is_object() && former.contains("levels") ? former["levels"] : json::array())
+  {
+    const auto        entry = level.find("file");
+    const std::string name = entry != level.end() && entry->is_string() ? entry->get<std::string>() : "";
+    const std::string file = (fs::path(jsonPath).parent_path() / name).string();
+    if (HasExtension(name, ".vtu") && fs::path(name).filename() == name &&
+        std::find(paths.begin(), paths.end(), file) == paths.end())
+    {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
 } // namespace
 
 std::vector<std::string>
@@ -104,10 +126,12 @@ WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix)
   files.push_back(std::make_unique<AtomicFile>(jsonPath));
   paths.push_back(jsonPath);
   files.back()->Write(document.dump(1) + '\n');
+  const std::vector<std::string> outOfDate = FormerLevels(jsonPath, paths);
   for (const auto & file : files)
   {
     file->Commit();
   }
+  OutputTransaction::Take({}, outOfDate, nullptr);
   return paths;
 }
 

@@ -2,6 +2,8 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneAtomicFile.h"
+#include "boneOutputTransaction.h"
+#include "boneStagingFolder.h"
 
 #include "boneTestFiles.h"
 
@@ -89,6 +91,91 @@ TEST_F(AtomicFileTest, AFullDiskLeavesTheFormerFile)
   EXPECT_THAT(line, HasSubstr("a.txt: cannot write"));
   EXPECT_EQ(ReadText("a.txt"), "before");
   EXPECT_THAT(Files(), ElementsAre("a.txt"));
+}
+
+TEST_F(AtomicFileTest, AReplacedFileKeepsItsMode)
+{
+  namespace fs = std::filesystem;
+  WriteText("a.txt", "before");
+  fs::permissions(Path("a.txt"), fs::perms::owner_read | fs::perms::owner_write);
+  WriteFileAtomically(Path("a.txt"), "after");
+  EXPECT_EQ(ReadText("a.txt"), "after");
+  EXPECT_EQ(fs::status(Path("a.txt")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(AtomicFileTest, FilesOfATransactionAppearTogether)
+{
+  WriteText("a.txt", "before");
+  OutputTransaction all;
+  WriteFileAtomically(Path("a.txt"), "after");
+  WriteFileAtomically(Path("b.txt"), "new");
+  EXPECT_EQ(ReadText("a.txt"), "before");
+  EXPECT_FALSE(std::filesystem::exists(Path("b.txt")));
+  all.Commit();
+  EXPECT_EQ(ReadText("a.txt"), "after");
+  EXPECT_EQ(ReadText("b.txt"), "new");
+  EXPECT_THAT(Files(), ElementsAre("a.txt", "b.txt"));
+}
+
+TEST_F(AtomicFileTest, ATransactionThatIsNotCommittedLeavesNothing)
+{
+  {
+    OutputTransaction all;
+    WriteFileAtomically(Path("a.txt"), "content");
+    StagingFolder folder(Path("out"));
+    WriteFileAtomically(folder.GetPath() + "/b.txt", "content");
+    EXPECT_TRUE(std::filesystem::exists(folder.GetPath() + "/b.txt"));
+    folder.Commit();
+    EXPECT_THROW(OutputTransaction(), std::logic_error);
+  }
+  EXPECT_THAT(Files(), IsEmpty());
+}
+
+TEST_F(AtomicFileTest, AMoveThatFailsPutsTheOthersBack)
+{
+  WriteText("a.txt", "before");
+  {
+    OutputTransaction all;
+    WriteFileAtomically(Path("a.txt"), "after");
+    WriteFileAtomically(Path("b.txt"), "new");
+    WriteFileAtomically(Path("c.txt"), "new");
+    std::filesystem::create_directory(Path("c.txt"));
+    EXPECT_THAT(ErrorOf([&] { all.Commit(); }), HasSubstr("c.txt: cannot write"));
+  }
+  EXPECT_EQ(ReadText("a.txt"), "before");
+  EXPECT_THAT(Files(), ElementsAre("a.txt", "c.txt"));
+}
+
+TEST_F(AtomicFileTest, TwoOutputsOfOneNameAreRefused)
+{
+  OutputTransaction all;
+  WriteFileAtomically(Path("a.txt"), "first");
+  EXPECT_THAT(ErrorOf([&] { WriteFileAtomically(Path("./a.txt"), "second"); }), HasSubstr("the name of two outputs"));
+}
+
+TEST_F(AtomicFileTest, AFolderLosesWhatIsOutOfDate)
+{
+  std::filesystem::create_directory(Path("out"));
+  for (const char * name : { "out/mine.txt", "out/level1", "out/level2" })
+  {
+    WriteText(name, "before");
+  }
+  StagingFolder folder(Path("out"));
+  WriteFileAtomically(folder.GetPath() + "/level1", "after");
+  folder.Commit([](const std::string & name) { return name.rfind("level", 0) == 0; });
+  EXPECT_THAT(Files(), ElementsAre("out", "out/level1", "out/mine.txt"));
+  EXPECT_EQ(ReadText("out/level1"), "after");
+}
+
+TEST_F(AtomicFileTest, AFolderWhereAFileIsToBeWrittenIsNamed)
+{
+  std::filesystem::create_directories(Path("out/report.txt"));
+  WriteText("out/first", "before");
+  StagingFolder folder(Path("out"));
+  WriteFileAtomically(folder.GetPath() + "/first", "after");
+  WriteFileAtomically(folder.GetPath() + "/report.txt", "text");
+  EXPECT_THAT(ErrorOf([&] { folder.Commit(); }), HasSubstr("out/report.txt: is a folder"));
+  EXPECT_EQ(ReadText("out/first"), "before");
 }
 
 TEST_F(AtomicFileTest, AnEmptyFileIsNotCommitted)

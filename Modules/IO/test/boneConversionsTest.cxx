@@ -87,6 +87,37 @@ TEST(Conversions, PointDensityIsTheMeanOfTheValuesAtTheCorners)
   {
     EXPECT_NEAR(grid->GetPointData()->GetArray("Density")->GetComponent(p, 0), mesh.points[p].x(), 1e-5);
   }
+  vtkDataArray * const mean = grid->GetCellData()->GetScalars();
+  ASSERT_STREQ(mean->GetName(), "MeanDensity");
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    double centre = 0.0;
+    for (const IdType v : mesh.tetrahedra[t])
+    {
+      centre += 0.25 * mesh.points[v].x();
+    }
+    EXPECT_NEAR(mean->GetComponent(static_cast<vtkIdType>(t), 0), centre, 1e-5);
+  }
+}
+
+TEST(Conversions, PointDensityIsOfOneRegion)
+{
+  MeshArrays mesh = DensityBox({ 1 });
+  mesh.region.assign(mesh.tetrahedra.size(), 1);
+  mesh.region.back() = 2;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    std::fill_n(
+      mesh.coefficients.begin() + static_cast<std::ptrdiff_t>(4 * t), 4, mesh.region[t] == 2 ? 100.0 : 1000.0);
+  }
+  const auto grid = ToVtkUnstructuredGrid(mesh);
+  const Id4  inner = mesh.tetrahedra.back();
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    const bool inside = std::find(inner.begin(), inner.end(), static_cast<IdType>(p)) != inner.end();
+    EXPECT_EQ(grid->GetPointData()->GetArray("Density")->GetComponent(static_cast<vtkIdType>(p), 0),
+              inside ? 100 : 1000);
+  }
 }
 
 TEST(Conversions, GridAndBack)

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneImageIO.h"
+#include "boneLabelValue.h"
 
 #include "boneTestFiles.h"
 
@@ -203,6 +204,61 @@ TEST_F(ImageIOTest, RefusesFilesThatAreCutShort)
   EXPECT_THAT(ErrorOfReading("a.mhd"), HasSubstr("a.mhd: is cut short"));
   std::filesystem::remove(Path("a.raw"));
   EXPECT_THAT(ErrorOfReading("a.mhd"), HasSubstr("a.mhd: "));
+}
+
+TEST_F(ImageIOTest, RefusesCompressedFilesWithOneChangedByte)
+{
+  auto labels = ObliqueRamp<LabelImage>();
+  for (const char * name : { "a.nii.gz", "a.mha", "a.nrrd" })
+  {
+    WriteImage(labels, Path(name));
+    ExpectSame<LabelImage>(ReadLabels(Path(name)), labels);
+    std::ostringstream whole;
+    whole << std::ifstream(Path(name), std::ios::binary).rdbuf();
+    int accepted = 0;
+    // Data and checksum make at least the last third of these files.
+    for (std::size_t i = 2 * whole.str().size() / 3; i < whole.str().size(); ++i)
+    {
+      std::string changed = whole.str();
+      changed[i] = static_cast<char>(changed[i] ^ 0x10);
+      std::ofstream(Path(name), std::ios::binary) << changed;
+      SCOPED_TRACE(std::string(name) + " byte " + std::to_string(i));
+      try
+      {
+        ExpectSame<LabelImage>(ReadLabels(Path(name)), labels); // a bit that fills up the last byte of the stream
+        ++accepted;
+      }
+      catch (const IOError & error)
+      {
+        EXPECT_THAT(error.what(), HasSubstr(name));
+      }
+    }
+    EXPECT_LE(accepted, 1) << name;
+  }
+}
+
+TEST_F(ImageIOTest, RefusesMetaImagesWithoutTheirDataFiles)
+{
+  for (const char * data : { "LIST\n", "LIST\nno.raw\n", "%d.raw\n", "%d.raw 1 5 0\n" })
+  {
+    WriteText("m.mhd",
+              std::string("ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 4 4 4\n"
+                          "ElementType = MET_SHORT\nElementDataFile = ") +
+                data);
+    EXPECT_THAT(ErrorOfReading("m.mhd"), HasSubstr("m.mhd")) << data;
+  }
+}
+
+TEST_F(ImageIOTest, ALabelMapOfOneBoneSaysSo)
+{
+  auto labels = ObliqueRamp<LabelImage>();
+  EXPECT_FALSE(StatesOneBone(*labels));
+  StateOneBone(*labels);
+  for (const char * name : { "a.nii.gz", "a.mha", "a.mhd", "a.nrrd", "a.hdr" })
+  {
+    WriteImage(labels, Path(name));
+    EXPECT_TRUE(StatesOneBone(*ReadLabels(Path(name)))) << name;
+  }
 }
 
 TEST_F(ImageIOTest, RefusesWhatIsNoVolume)

@@ -292,7 +292,8 @@ TEST_F(MeshIOTest, TheFileIsInlineBase64WithNumericArraysOnly)
   EXPECT_THAT(text, testing::Not(HasSubstr("AppendedData")));
   EXPECT_THAT(text, testing::Not(HasSubstr("type=\"String\"")));
   EXPECT_THAT(text, testing::Not(HasSubstr("format=\"ascii\"")));
-  for (const char * name : { "Region", "Layer", "Slice", "Degree", "DensityCoefficients", "FaceNeighbors", "Density" })
+  for (const char * name :
+       { "Region", "Layer", "Slice", "Degree", "DensityCoefficients", "FaceNeighbors", "Density", "MeanDensity" })
   {
     EXPECT_THAT(text, HasSubstr("Name=\"" + std::string(name) + "\""));
   }

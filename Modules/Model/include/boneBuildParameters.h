@@ -27,7 +27,7 @@ DefaultLevels()
 // clang-format off
 #define BONE_BUILD_PLAN_PARAMETERS(value, flag) \
   value(int, label, Label, 0, ParameterRange::Any(), "", "label", \
-    "The bone's value in the label map; 0: every value but 0") \
+    "The bone's value in the label map; 0: its only one, or all where the map states that they are regions of one bone") \
   value(unsigned int, axis, Axis, 2, ParameterRange::Between(0, 2), "", "", \
     "Image axis, 0 to 2, that the slices follow one another along") \
   value(IdType, tetrahedra, Tetrahedra, 33000, ParameterRange::Between(500, 1e7), "", "tetrahedra", \

@@ -19,7 +19,8 @@ struct BuildInput
 };
 
 /** CT and label map cut down to the bone and the plan's margin; the CT as it is where `labels` is null. Throws
- * itk::ExceptionObject where the two have not the same grid, or the label does not occur. */
+ * itk::ExceptionObject where the two have not the same grid, the label does not occur, or none of several labels is
+ * chosen (\ref VerifyOneBone). */
 BuildInput
 CropToBone(const CTImage *             ct,
            const LabelImage *          labels,

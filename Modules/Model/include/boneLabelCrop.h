@@ -7,6 +7,8 @@
 #include "boneImageIO.h"
 #include "boneTypes.h"
 
+#include <vector>
+
 namespace bone
 {
 /** \defgroup LabelCrop A CT and its label map, cut down to one bone
@@ -17,6 +19,24 @@ namespace bone
  * a voxel). */
 void
 VerifySameGrid(const CTImage * ct, const LabelImage * labels);
+
+/** A value of a label map. */
+struct LabelCount
+{
+  int         value{ 0 };
+  std::size_t voxels{ 0 };
+  double      volume{ 0.0 }; ///< mm^3
+};
+
+/** The values there are but 0, ascending. */
+std::vector<LabelCount>
+CountLabels(const LabelImage * labels);
+
+/** Throws itk::ExceptionObject that lists value, voxels and volume of each label where `label` is 0, there are several
+ * and the label map does not state that they are regions of one bone (\ref StatesOneBone): bones are not joined without
+ * being told to. */
+void
+VerifyOneBone(const LabelImage * labels, int label);
 
 /** What a label map says of one bone. */
 struct BoneExtent
@@ -38,6 +58,7 @@ GrowRegion(const CTImage * image, const CTImage::RegionType & region, double mar
 
 CTImage::Pointer
 Crop(const CTImage * image, const CTImage::RegionType & region);
+/** Keeps what the label map states of its labels. */
 LabelImage::Pointer
 Crop(const LabelImage * image, const CTImage::RegionType & region);
 

@@ -26,6 +26,7 @@ CropToBone(const CTImage *             ct,
     return input;
   }
   VerifySameGrid(ct, labels);
+  VerifyOneBone(labels, plan.label);
   const BoneExtent          extent = MeasureLabel(labels, plan.label);
   const CTImage::RegionType region = GrowRegion(ct, extent.region, plan.cropMargin);
   input.ct = Crop(ct, region);

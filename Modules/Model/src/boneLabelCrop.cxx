@@ -3,13 +3,15 @@
  *=========================================================================*/
 #include "boneLabelCrop.h"
 
+#include "boneLabelValue.h"
+
 #include <itkImageRegionConstIteratorWithIndex.h>
 #include <itkImageRegionIterator.h>
 #include <itkRegionOfInterestImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <iomanip>
 #include <sstream>
 
 namespace bone
@@ -35,29 +37,59 @@ CropImage(const TImage * image, const CTImage::RegionType & region)
   return output;
 }
 
+/** "1 (8000 voxels, 8.0 cm^3), 2 (...)": the first twenty. */
 std::string
-ListLabels(const LabelImage * labels)
+ListLabels(const std::vector<LabelCount> & labels)
 {
-  std::set<short> values;
-  for (itk::ImageRegionConstIterator<LabelImage> it(labels, labels->GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  constexpr std::size_t most = 20;
+  std::ostringstream    list;
+  list << std::fixed << std::setprecision(1);
+  for (std::size_t i = 0; i < std::min(most, labels.size()); ++i)
   {
-    values.insert(it.Get());
+    list << (i == 0 ? "" : ", ") << labels[i].value << " (" << labels[i].voxels << " voxels, "
+         << 1e-3 * labels[i].volume << " cm^3)";
   }
-  values.erase(0);
-  std::ostringstream list;
-  std::size_t        count = 0;
-  for (const short value : values)
-  {
-    list << (count == 0 ? "" : ", ") << value;
-    if (++count == 20)
-    {
-      list << ", ...";
-      break;
-    }
-  }
-  return values.empty() ? "it is 0 everywhere" : "it has " + list.str();
+  list << (labels.size() > most ? ", ..." : "");
+  return list.str();
 }
 } // namespace
+
+std::vector<LabelCount>
+CountLabels(const LabelImage * labels)
+{
+  constexpr int            offset = 32768;
+  std::vector<std::size_t> counts(2 * offset, 0);
+  for (itk::ImageRegionConstIterator<LabelImage> it(labels, labels->GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  {
+    ++counts[static_cast<std::size_t>(it.Get() + offset)];
+  }
+  const auto              spacing = labels->GetSpacing();
+  std::vector<LabelCount> result;
+  for (int value = -offset; value < offset; ++value)
+  {
+    const std::size_t voxels = counts[static_cast<std::size_t>(value + offset)];
+    if (value != 0 && voxels > 0)
+    {
+      result.push_back({ value, voxels, static_cast<double>(voxels) * spacing[0] * spacing[1] * spacing[2] });
+    }
+  }
+  return result;
+}
+
+void
+VerifyOneBone(const LabelImage * labels, int label)
+{
+  if (label != 0 || StatesOneBone(*labels))
+  {
+    return;
+  }
+  const auto counts = CountLabels(labels);
+  if (counts.size() > 1)
+  {
+    itkGenericExceptionMacro("The label map has " << counts.size() << " labels, and which of them is the bone was not "
+                                                  << "said: " << ListLabels(counts) << '.');
+  }
+}
 
 void
 VerifySameGrid(const CTImage * ct, const LabelImage * labels)
@@ -133,9 +165,10 @@ MeasureLabel(const LabelImage * labels, int label)
   }
   if (extent.voxels == 0)
   {
-    itkGenericExceptionMacro("The label map has no voxel of " << (label == 0 ? "any label" : "label ")
-                                                              << (label == 0 ? "" : std::to_string(label)) << "; "
-                                                              << ListLabels(labels) << '.');
+    const auto counts = CountLabels(labels);
+    itkGenericExceptionMacro("The label map has no voxel of "
+                             << (label == 0 ? "any label" : "label " + std::to_string(label)) << "; "
+                             << (counts.empty() ? "it is 0 everywhere" : "it has " + ListLabels(counts)) << '.');
   }
   extent.volume = static_cast<double>(extent.voxels) * voxel;
   for (int d = 0; d < 3; ++d)
@@ -169,7 +202,12 @@ Crop(const CTImage * image, const CTImage::RegionType & region)
 LabelImage::Pointer
 Crop(const LabelImage * image, const CTImage::RegionType & region)
 {
-  return CropImage(image, region);
+  const auto cropped = CropImage(image, region);
+  if (StatesOneBone(*image))
+  {
+    StateOneBone(*cropped);
+  }
+  return cropped;
 }
 
 LabelImage::Pointer

@@ -6,6 +6,8 @@
 
 #include "bonePhantomImageSource.h"
 
+#include "boneLabelValue.h"
+
 #include <itkImageScanlineIterator.h>
 
 #include <algorithm>
@@ -150,6 +152,7 @@ PhantomImageSource<TOutputImage>::GenerateOutputInformation()
   };
   describe(this->GetOutput());
   describe(this->GetLabelOutput());
+  StateOneBone(*this->GetLabelOutput());
 }
 
 template <typename TOutputImage>

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneContourImage.h"
 
+#include "boneLabelValue.h"
 #include "bonePolylines.h"
 #include "boneRefuse.h"
 
@@ -193,6 +194,7 @@ LabelImage::Pointer
 RasterizeContours(const ContourStack * stack, const itk::ImageBase<3> * grid)
 {
   auto image = LabelImage::New();
+  StateOneBone(*image);
   image->CopyInformation(grid);
   image->SetRegions(grid->GetLargestPossibleRegion());
   image->Allocate(true);

@@ -15,6 +15,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 namespace bone
@@ -40,6 +41,7 @@ OpenGz(const std::string & path)
 // What is needed of a NIfTI-1 header (348 bytes; offsets as in nifti1.h).
 struct NiftiHeader
 {
+  bool        readable{ false };
   bool        valid{ false };
   bool        swapped{ false };
   bool        single{ false }; // header and data in one file
@@ -72,8 +74,9 @@ ReadNiftiHeader(const std::string & path)
   const GzFile          file = OpenGz(path);
   if (!file || gzread(file.get(), raw.data(), raw.size()) != static_cast<int>(raw.size()))
   {
-    return header;
+    return header; // a small file is decompressed whole, with its checksum, before the first byte comes
   }
+  header.readable = true;
   const auto dimensions = Decode<std::int16_t>(&raw[40], false);
   header.swapped = dimensions < 1 || dimensions > 7;
   header.valid = Decode<std::int32_t>(&raw[0], header.swapped) == 348;
@@ -141,7 +144,8 @@ CheckNifti(const std::string & path)
   const bool     pair = HasExtension(path, ".img") || HasExtension(path, ".img.gz") || HasExtension(path, ".hdr") ||
                     HasExtension(path, ".hdr.gz");
   const NiftiHeader header = ReadNiftiHeader(pair ? PairMember(path, ".hdr") : path);
-  check.known = header.valid;
+  check.known = header.valid || !header.readable;
+  check.whole = header.readable;
   if (!header.valid)
   {
     return check;
@@ -167,12 +171,72 @@ CheckNifti(const std::string & path)
   return check;
 }
 
+/** Whether a file's bytes from `offset` on are one stream of zlib or gzip that ends, with its checksum, after
+ * `numberOfBytes`. */
+bool
+Inflates(const fs::path & path, std::size_t offset, std::size_t numberOfBytes)
+{
+  constexpr int     anyHeader = 15 + 32;
+  std::ifstream     file(path, std::ios::binary);
+  std::vector<char> from(std::size_t{ 1 } << 18), to(std::size_t{ 1 } << 20);
+  file.seekg(static_cast<std::streamoff>(offset));
+  z_stream stream{};
+  if (!file || inflateInit2(&stream, anyHeader) != Z_OK)
+  {
+    return false;
+  }
+  int         state = Z_OK;
+  std::size_t bytes = 0;
+  while (state == Z_OK && bytes <= numberOfBytes)
+  {
+    if (stream.avail_in == 0)
+    {
+      file.read(from.data(), static_cast<std::streamsize>(from.size()));
+      stream.next_in = reinterpret_cast<Bytef *>(from.data());
+      stream.avail_in = static_cast<uInt>(file.gcount());
+    }
+    stream.next_out = reinterpret_cast<Bytef *>(to.data());
+    stream.avail_out = static_cast<uInt>(to.size());
+    state = inflate(&stream, Z_NO_FLUSH); // Z_BUF_ERROR where the file has no more
+    bytes += to.size() - stream.avail_out;
+  }
+  inflateEnd(&stream);
+  return state == Z_STREAM_END && bytes == numberOfBytes;
+}
+
 std::string
 Trim(const std::string & text)
 {
   const char * blanks = " \t\r";
   const auto   first = text.find_first_not_of(blanks);
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/** Whether the names that follow are those of files, and there are some. */
+bool
+ListedFilesExist(std::istream & names, const fs::path & folder)
+{
+  std::size_t count = 0;
+  for (std::string line; std::getline(names, line);)
+  {
+    std::error_code error;
+    if (!Trim(line).empty() && !fs::is_regular_file(folder / Trim(line), error))
+    {
+      return false;
+    }
+    count += Trim(line).empty() ? 0 : 1;
+  }
+  return count > 0;
+}
+
+/** "name%03d.raw first last step": without its numbers MetaIO divides by nothing. */
+bool
+IsFilePattern(const std::string & data)
+{
+  std::istringstream text(data);
+  std::string        name;
+  long               first = 0, last = 0, step = 0;
+  return text >> name >> first >> last >> step && first >= 0 && last >= first && step > 0;
 }
 
 ImageFileCheck
@@ -188,22 +252,63 @@ CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
   }
   const std::string data = fields["ElementDataFile"];
   const auto isTrue = [](const std::string & text) { return !text.empty() && (text[0] == 'T' || text[0] == 't'); };
-  const bool oneFile = data.find('%') == std::string::npos && data.rfind("LIST", 0) != 0;
-  if (!stream || !isTrue(fields["BinaryData"]) || !oneFile)
+  if (data.rfind("LIST", 0) == 0 || data.find('%') != std::string::npos)
+  {
+    check.known = true;
+    check.whole = data[0] == 'L' ? ListedFilesExist(stream, fs::path(path).parent_path()) : IsFilePattern(data);
+    return check;
+  }
+  if (!stream || !isTrue(fields["BinaryData"]))
   {
     return check;
   }
   check.known = true;
   const bool      local = data == "LOCAL" || data == "Local" || data == "local";
   const auto      start = local ? static_cast<std::size_t>(stream.tellg()) : 0;
+  const fs::path  file = local ? fs::path(path) : fs::path(path).parent_path() / data;
   std::error_code error;
-  const auto      size = fs::file_size(local ? fs::path(path) : fs::path(path).parent_path() / data, error);
-  std::size_t     needed = numberOfBytes;
-  if (isTrue(fields["CompressedData"]))
+  const auto      size = fs::file_size(file, error);
+  check.whole = !error && numberOfBytes > 0;
+  if (check.whole)
   {
-    needed = static_cast<std::size_t>(std::strtoull(fields["CompressedDataSize"].c_str(), nullptr, 10));
+    check.whole =
+      isTrue(fields["CompressedData"]) ? Inflates(file, start, numberOfBytes) : size >= start + numberOfBytes;
   }
-  check.whole = !error && size >= start + std::max<std::size_t>(needed, 1);
+  return check;
+}
+
+/** Data in one file, raw or gzip. */
+ImageFileCheck
+CheckNrrd(const std::string & path, std::size_t numberOfBytes)
+{
+  ImageFileCheck                     check;
+  std::ifstream                      stream(path, std::ios::binary);
+  std::map<std::string, std::string> fields;
+  std::string                        line;
+  while (std::getline(stream, line) && !Trim(line).empty())
+  {
+    const auto colon = line.find(':');
+    if (colon != std::string::npos && line[0] != '#' && line.compare(colon, 2, ":=") != 0)
+    {
+      fields[Trim(line.substr(0, colon))] = Trim(line.substr(colon + 1));
+    }
+  }
+  const std::string data = fields["data file"] + fields["datafile"], encoding = fields["encoding"];
+  const bool        skips =
+    fields.count("line skip") + fields.count("lineskip") + fields.count("byte skip") + fields.count("byteskip") > 0;
+  const bool gzip = encoding == "gzip" || encoding == "gz";
+  if (skips || (!gzip && encoding != "raw") || data.find('%') != std::string::npos || data.rfind("LIST", 0) == 0 ||
+      (data.empty() && !stream))
+  {
+    return check;
+  }
+  check.known = true;
+  const fs::path    file = data.empty() ? fs::path(path) : fs::path(path).parent_path() / data;
+  const std::size_t start = data.empty() ? static_cast<std::size_t>(stream.tellg()) : 0;
+  std::error_code   error;
+  const auto        size = fs::file_size(file, error);
+  check.whole =
+    !error && numberOfBytes > 0 && (gzip ? Inflates(file, start, numberOfBytes) : size >= start + numberOfBytes);
   return check;
 }
 } // namespace
@@ -219,6 +324,10 @@ CheckImageFile(const std::string & path, const itk::ImageIOBase * io)
   if (format == "MetaImageIO")
   {
     return CheckMetaImage(path, static_cast<std::size_t>(io->GetImageSizeInBytes()));
+  }
+  if (format == "NrrdImageIO")
+  {
+    return CheckNrrd(path, static_cast<std::size_t>(io->GetImageSizeInBytes()));
   }
   return {};
 }

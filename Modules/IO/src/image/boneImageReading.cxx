@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneImageCheck.h"
 #include "boneImageFile.h"
+#include "boneLabelValue.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
@@ -82,7 +83,9 @@ RequireWholeFile(const std::string & path, const itk::ImageIOBase * io)
   const ImageFileCheck check = CheckImageFile(path, io);
   if (!check.whole)
   {
-    throw IOError(path, "is cut short or damaged: not all voxels are there");
+    throw IOError(path,
+                  "is cut short or damaged: its voxels are not all there, or do not agree with their checksum; copy it "
+                  "again from where it came");
   }
   if (check.notFinite > 0)
   {
@@ -197,6 +200,10 @@ ReadLabels(const std::string & path)
                         Limits::max()));
     }
     *label = static_cast<LabelImage::PixelType>(value);
+  }
+  if (StatesOneBone(*values))
+  {
+    StateOneBone(*labels);
   }
   return labels;
 }

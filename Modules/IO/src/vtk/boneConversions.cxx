@@ -20,7 +20,9 @@
 #include <itkTetrahedronCell.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <numeric>
 
 namespace bone
 {
@@ -95,13 +97,38 @@ RequireConsistent(const MeshArrays & mesh)
   }
 }
 
-// Mean over a point's tetrahedra of their values there, which are single coefficients.
+// The mean over each tetrahedron: that of its coefficients, as all Bernstein polynomials of a degree have one integral.
+std::vector<float>
+MeanDensity(const MeshArrays & mesh)
+{
+  const int          width = BernsteinCount(mesh.maximumDegree);
+  std::vector<float> mean(mesh.tetrahedra.size());
+  for (std::size_t t = 0; t < mean.size(); ++t)
+  {
+    const double * const c = mesh.coefficients.data() + t * width;
+    const int            count = BernsteinCount(mesh.degree[t]);
+    mean[t] = static_cast<float>(std::accumulate(c, c + count, 0.0) / count);
+  }
+  return mean;
+}
+
+// Mean over those of a point's tetrahedra that belong to the innermost region there, of their values at the point,
+// which are single coefficients: a mean across regions would be no density of either.
 std::vector<float>
 PointDensity(const MeshArrays & mesh)
 {
   const int           width = BernsteinCount(mesh.maximumDegree);
+  const auto          regionOf = [&mesh](std::size_t t) { return mesh.region.empty() ? 0 : mesh.region[t]; };
+  std::vector<int>    innermost(mesh.points.size(), std::numeric_limits<int>::min());
   std::vector<double> sum(mesh.points.size(), 0.0);
   std::vector<int>    count(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    for (const IdType p : mesh.tetrahedra[t])
+    {
+      innermost[p] = std::max<int>(innermost[p], regionOf(t));
+    }
+  }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
   {
     const int                n = mesh.degree[t];
@@ -110,8 +137,12 @@ PointDensity(const MeshArrays & mesh)
     };
     for (int i = 0; i < 4; ++i)
     {
-      sum[mesh.tetrahedra[t][i]] += mesh.coefficients[t * width + corner[i]];
-      ++count[mesh.tetrahedra[t][i]];
+      const IdType p = mesh.tetrahedra[t][i];
+      if (regionOf(t) == innermost[p])
+      {
+        sum[p] += mesh.coefficients[t * width + corner[i]];
+        ++count[p];
+      }
     }
   }
   std::vector<float> density(sum.size());
@@ -132,6 +163,9 @@ AddDensity(const MeshArrays & mesh, vtkUnstructuredGrid * grid)
   cells->AddArray(MakeArray<vtkDoubleArray>(ArrayNames::DensityCoefficients, nt, width, [&](vtkIdType t, int k) {
     return k < BernsteinCount(mesh.degree[t]) ? mesh.coefficients[t * width + k] : 0.0;
   }));
+  const auto mean = MeanDensity(mesh);
+  cells->SetScalars(
+    MakeArray<vtkFloatArray>(ArrayNames::MeanDensity, nt, 1, [&](vtkIdType t, int) { return mean[t]; }));
   const auto density = PointDensity(mesh);
   grid->GetPointData()->AddArray(MakeArray<vtkFloatArray>(
     ArrayNames::Density, static_cast<vtkIdType>(density.size()), 1, [&](vtkIdType p, int) { return density[p]; }));

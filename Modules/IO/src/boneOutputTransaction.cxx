@@ -1,0 +1,145 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneOutputTransaction.h"
+
+#include "boneAtomicFile.h"
+#include "boneIOError.h"
+#include "boneStagingFolder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace bone
+{
+namespace
+{
+std::atomic<OutputTransaction *> current{ nullptr };
+
+std::mutex &
+RenameMutex()
+{
+  static std::mutex mutex;
+  return mutex;
+}
+
+/** Puts back the first `count` moves. */
+void
+Undo(const std::vector<OutputTransaction::Move> & moves, std::size_t count)
+{
+  while (count-- > 0)
+  {
+    const OutputTransaction::Move & move = moves[count];
+    struct stat                     former
+    {
+    };
+    if (!move.former.empty() && ::lstat(move.former.c_str(), &former) == 0)
+    {
+      ::rename(move.former.c_str(), move.to.c_str());
+    }
+    else
+    {
+      ::rename(move.to.c_str(), move.from.c_str());
+    }
+  }
+}
+
+void
+MoveAll(const std::vector<OutputTransaction::Move> & moves, const std::vector<std::string> & outOfDate)
+{
+  const std::lock_guard<std::mutex> lock(RenameMutex());
+  for (std::size_t i = 0; i < moves.size(); ++i)
+  {
+    const OutputTransaction::Move & move = moves[i];
+    struct stat                     there
+    {
+    };
+    if (::lstat(move.to.c_str(), &there) == 0 && S_ISREG(there.st_mode))
+    {
+      // A file keeps its mode: nobody may read what only its owner could.
+      ::chmod(move.from.c_str(), there.st_mode & 07777);
+      ::link(move.to.c_str(), move.former.c_str());
+    }
+    if (::rename(move.from.c_str(), move.to.c_str()) != 0)
+    {
+      const int code = errno;
+      Undo(moves, i);
+      throw IOError(move.path, std::string("cannot write: ") + std::strerror(code));
+    }
+  }
+  for (const std::string & file : outOfDate)
+  {
+    ::unlink(file.c_str());
+  }
+}
+} // namespace
+
+OutputTransaction::OutputTransaction()
+{
+  OutputTransaction * none = nullptr;
+  if (!current.compare_exchange_strong(none, this))
+  {
+    throw std::logic_error("OutputTransaction: another one lives");
+  }
+}
+
+OutputTransaction::~OutputTransaction()
+{
+  current = nullptr;
+}
+
+void
+OutputTransaction::Commit()
+{
+  MoveAll(m_Moves, m_OutOfDate);
+  m_Moves.clear();
+  m_OutOfDate.clear();
+  m_Owners.clear();
+}
+
+void
+OutputTransaction::Take(const std::vector<Move> &        moves,
+                        const std::vector<std::string> & outOfDate,
+                        const std::shared_ptr<void> &    owner)
+{
+  OutputTransaction * all = current;
+  if (all == nullptr || (!moves.empty() && IsStaged(moves.front().to)))
+  {
+    MoveAll(moves, outOfDate);
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(RenameMutex());
+  for (const Move & move : moves)
+  {
+    const auto same = [&move](const Move & other) { return other.to == move.to; };
+    if (std::any_of(all->m_Moves.begin(), all->m_Moves.end(), same))
+    {
+      throw IOError(move.path, "is the name of two outputs: give each a name of its own");
+    }
+  }
+  all->m_Moves.insert(all->m_Moves.end(), moves.begin(), moves.end());
+  all->m_OutOfDate.insert(all->m_OutOfDate.end(), outOfDate.begin(), outOfDate.end());
+  all->m_Owners.push_back(owner);
+}
+
+void
+OutputTransaction::StopAll()
+{
+  RenameMutex().lock(); // and never given back
+  RemovePendingTemporaries();
+  RemoveStagingFolders();
+}
+
+void
+OutputTransaction::FinishAll()
+{
+  RenameMutex().lock(); // and never given back
+}
+} // namespace bone
