@@ -3,14 +3,19 @@
  *=========================================================================*/
 #include "boneOptions.h"
 
+#include "boneAtomicFile.h"
 #include "boneContourIO.h"
 #include "boneIOError.h"
 #include "boneLabelCrop.h"
+#include "boneParameters.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace bone
@@ -95,6 +100,12 @@ Between(double lower, double upper)
   return NumberWhere([lower, upper](double x) { return x >= lower && x <= upper; }, text.str());
 }
 
+CLI::Validator
+Length()
+{
+  return Between(ParameterRange::Length().lower, ParameterRange::Length().upper);
+}
+
 void
 BoneOptions::AddTo(CLI::App * command)
 {
@@ -156,19 +167,57 @@ AddAxisOption(CLI::App * command, unsigned int & axis)
     ->type_name("x|y|z");
 }
 
-void
-VerifyExtension(const std::string & path, const std::vector<std::string> & extensions)
+bool
+EndsIn(const std::string & path, const std::string & extension)
 {
-  std::string list;
-  for (const std::string & extension : extensions)
+  return path.size() > extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), path.rbegin(), [](unsigned char a, unsigned char b) {
+           return std::tolower(a) == std::tolower(b);
+         });
+}
+
+const std::vector<std::string> &
+ImageExtensions()
+{
+  static const std::vector<std::string> extensions{
+    ".nii.gz", ".nii", ".mha", ".mhd", ".nrrd", ".nhdr", ".hdr", ".img"
+  };
+  return extensions;
+}
+
+void
+VerifyOutputs(const std::vector<OutputFile> & files)
+{
+  std::set<std::string> names;
+  for (const OutputFile & file : files)
   {
-    if (path.size() > extension.size() &&
-        path.compare(path.size() - extension.size(), extension.size(), extension) == 0)
+    if (file.path.empty())
     {
-      return;
+      continue;
     }
-    list += (list.empty() ? "" : ", ") + extension;
+    std::string list;
+    bool        known = file.extensions.empty();
+    for (const std::string & extension : file.extensions)
+    {
+      known = known || EndsIn(file.path, extension);
+      list += (list.empty() ? "" : ", ") + extension;
+    }
+    if (!known)
+    {
+      throw UsageError("the output " + file.path + " must end in " + list);
+    }
+    try
+    {
+      const AtomicFile probe(file.path); // which makes a file beside it, and removes it
+    }
+    catch (const IOError & error)
+    {
+      throw UsageError(ErrorLine(error));
+    }
+    if (!names.insert(std::filesystem::absolute(file.path).lexically_normal().string()).second)
+    {
+      throw UsageError(file.path + " is the name of two outputs: give each a name of its own");
+    }
   }
-  throw UsageError("the output " + path + " must end in " + list);
 }
 } // namespace bone

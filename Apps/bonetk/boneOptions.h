@@ -20,6 +20,9 @@ CLI::Validator
 Positive();
 CLI::Validator
 NotNegative();
+/** mm; see ParameterRange::Length */
+CLI::Validator
+Length();
 /** lower <= x <= upper */
 CLI::Validator
 Between(double lower, double upper);
@@ -65,9 +68,25 @@ ReadBone(const BoneOptions & options, int label, unsigned int axis);
 void
 AddAxisOption(CLI::App * command, unsigned int & axis);
 
-/** The name must end in one of the extensions; throws UsageError. */
+/** Whether the name ends in the extension, in any case of its letters. */
+bool
+EndsIn(const std::string & path, const std::string & extension);
+
+/** Extensions of volumes and radiographs that can be written. */
+const std::vector<std::string> &
+ImageExtensions();
+
+/** A file to write, or none where the path is empty. */
+struct OutputFile
+{
+  std::string              path;
+  std::vector<std::string> extensions; ///< of which it must have one; none: any
+};
+
+/** Whether all these files can be written, which is to be found out before the work. Throws UsageError where one has
+ * another extension, cannot be written, or has the name of another. */
 void
-VerifyExtension(const std::string & path, const std::vector<std::string> & extensions);
+VerifyOutputs(const std::vector<OutputFile> & files);
 } // namespace bone
 
 #endif

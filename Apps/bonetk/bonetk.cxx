@@ -9,7 +9,8 @@
 
 #include <itkMultiThreaderBase.h>
 
-#include <iostream>
+#include <algorithm>
+#include <numeric>
 
 namespace
 {
@@ -33,6 +34,43 @@ AddSharedOptions(CLI::App & app, bone::Session & session)
   }
 }
 
+/** Letters to change, add or leave out to make one word of the other. */
+std::size_t
+EditDistance(const std::string & a, const std::string & b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{ 0 });
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j)
+    {
+      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({ change, row[j] + 1, row[j + 1] + 1 });
+    }
+  }
+  return row.back();
+}
+
+/** The command that a mistyped word is nearest to; empty where none is near. */
+std::string
+NearestCommand(const CLI::App & app, const std::string & word)
+{
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::App * command : app.get_subcommands([](const CLI::App *) { return true; }))
+  {
+    const std::size_t distance = EditDistance(word, command->get_name());
+    if (distance > 0 && distance < least)
+    {
+      least = distance;
+      nearest = command->get_name();
+    }
+  }
+  return nearest;
+}
+
 /** Parses the command line. Returns true where there is something to do, else sets the exit code. */
 bool
 Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exitCode)
@@ -54,6 +92,13 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
     for (const CLI::App * command : app.get_subcommands())
     {
       session.command = command->get_name();
+    }
+    const std::string nearest = session.command.empty() && argc > 1 ? NearestCommand(app, argv[1]) : "";
+    if (!nearest.empty())
+    {
+      session.Fail(std::string("there is no command ") + argv[1] + "; did you mean " + nearest + "?");
+      exitCode = BadUsage;
+      return false;
     }
     const std::string name = session.command.empty() ? "bonetk" : "bonetk " + session.command;
     session.Fail(std::string(error.what()) + "; see " + name + " --help");

@@ -123,7 +123,7 @@ class BadInput(TestCase):
         self.refuse("validate", "hexahedra.vtu", says="hexahedr")
 
     def test_output_folder_that_is_not_there(self):
-        self.refuse("phantom", "--spacing", 4, "-o", "nowhere/ct.nii.gz", says="nowhere")
+        self.refuse_usage("phantom", "--spacing", 4, "-o", "nowhere/ct.nii.gz", says="nowhere")
 
 
 class BadUsage(TestCase):

@@ -16,6 +16,7 @@
 
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <regex>
 #include <sstream>
 
@@ -81,6 +82,22 @@ WriteOutputs(const Evaluation &  evaluation,
   staging.Commit([](const std::string & name) { return std::regex_match(name, ofALevel); });
 }
 
+/** Whether an output's name is that of a folder in the output folder, which is to be found out before the work. */
+void
+VerifyFolder(const std::string & folder)
+{
+  std::error_code error;
+  for (const auto & entry : std::filesystem::directory_iterator(folder, error))
+  {
+    static const std::regex output(".*\\.(vtu|vtp|mha|json|png|txt)");
+    if (entry.is_directory(error) && std::regex_match(entry.path().filename().string(), output))
+    {
+      throw UsageError(entry.path().string() +
+                       " is a folder where a file may be written: rename it, or give another -o");
+    }
+  }
+}
+
 /** Finds the resolution, telling of each trial; the quality stage is then up to date. */
 Resolution
 Plan(const BuildInput & input, const BuildParameters & parameters, BuildPipeline & pipeline, Session & session)
@@ -127,7 +144,8 @@ RunBuild(const BuildOptions & options, Session & session)
   report.version = BONETK_VERSION;
   report.files = FilesOf(options);
   report.parameters = options.parameters;
-  StagingFolder    staging(options.output);
+  StagingFolder staging(options.output);
+  VerifyFolder(options.output);
   Lap              lap;
   const BuildInput input = ReadInput(report.files, plan);
   report.times.emplace_back("reading", lap());

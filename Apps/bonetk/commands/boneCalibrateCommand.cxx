@@ -146,7 +146,7 @@ Report(const DensityCalibrationFilter<CTImage> & filter, Session & session)
 void
 RunCalibrate(const CalibrateOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".vtu" });
+  VerifyOutputs({ { options.output, { ".vtu" } } });
   const auto & [line, to] = options.parameters;
   if (line.empty() && options.references.empty() && options.laws.empty())
   {

@@ -43,17 +43,14 @@ void
 Verify(const ContoursOptions & options)
 {
   options.bone.Verify();
+  std::vector<std::string> kinds = ImageExtensions();
+  kinds.insert(kinds.begin(), { ".vtp", ".mrk.json" });
+  std::vector<OutputFile> files{ { options.allSlices, { ".vtp" } } };
   for (const std::string & output : options.outputs)
   {
-    if (!IsContourFile(output))
-    {
-      VerifyExtension(output, { ".vtp", ".mrk.json", ".nii", ".nii.gz", ".mha", ".mhd", ".nrrd" });
-    }
+    files.push_back({ output, kinds });
   }
-  if (!options.allSlices.empty())
-  {
-    VerifyExtension(options.allSlices, { ".vtp" });
-  }
+  VerifyOutputs(files);
 }
 
 /** Sets the spacings of a build for slices and contours that are given, or of every slice and the default spacing. */

@@ -23,6 +23,7 @@ struct CropOptions
 void
 RunCrop(const CropOptions & options, Session &)
 {
+  VerifyOutputs({ { options.output, ImageExtensions() }, { options.labelsOutput, ImageExtensions() } });
   const CTImage::Pointer    ct = ReadCT(options.ct);
   const LabelImage::Pointer labels = ReadBoneLabels(options.labels, options.plan.label);
   const BuildInput          input = CropToBone(ct, labels, nullptr, options.plan);

@@ -132,8 +132,14 @@ RunDrr(const DrrOptions & options, Session & session)
   {
     throw UsageError("--noise needs --intensity, the photons a pixel");
   }
-  const auto views = ReadGeometry(options.geometry);
-  auto       source = MakeSource(options);
+  const auto              views = ReadGeometry(options.geometry);
+  std::vector<OutputFile> files{ { options.savedGeometry, {} } };
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    files.push_back({ ViewPath(options.output, i, views.size()), ImageExtensions() });
+  }
+  VerifyOutputs(files);
+  auto source = MakeSource(options);
   source->SetHUToAttenuation(options.bilinear      ? HUToAttenuation::Bilinear
                              : options.attenuation ? HUToAttenuation::WaterScaled
                                                    : HUToAttenuation::None);

@@ -31,6 +31,7 @@ struct VoxelsOptions
 void
 RunVoxels(const VoxelsOptions & options, Session & session)
 {
+  VerifyOutputs({ { options.output, ImageExtensions() } });
   const auto mesh = ReadDensityMesh(options.mesh);
   auto       filter = DensityImageFilter<DensityMesh<double>, CTImage>::New();
   filter->SetInput(mesh);
@@ -57,6 +58,14 @@ RunVoxels(const VoxelsOptions & options, Session & session)
       origin[axis] = lower[axis] - options.spacing;
       size[axis] = static_cast<itk::SizeValueType>(std::ceil((upper[axis] - origin[axis]) / options.spacing)) + 2;
     }
+    const double voxels = static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+    if (!(voxels <= LargestNumberOfVoxels))
+    {
+      std::ostringstream message;
+      message << "--spacing " << options.spacing << " gives " << voxels << " voxels, where " << LargestNumberOfVoxels
+              << " are the most; choose a larger one";
+      throw UsageError(message.str());
+    }
     filter->SetOrigin(origin);
     filter->SetSize(size);
     filter->SetSpacing(spacing);
@@ -79,7 +88,7 @@ struct ProfileOptions
 void
 RunProfile(const ProfileOptions & options, Session &)
 {
-  VerifyExtension(options.output, { ".csv" });
+  VerifyOutputs({ { options.output, { ".csv" } } });
   const MeshArrays mesh = ReadMeshArrays(options.mesh);
   const auto       profile =
     DensityProfile(mesh, TetraLocator(mesh), Vector3(options.from.data()), Vector3(options.to.data()), options.points);
@@ -125,7 +134,7 @@ AddVoxelsCommand(CLI::App & app, Action & action)
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
   auto * like = command->add_option("--like", options->like, "Image whose grid is taken");
   command->add_option("--spacing", options->spacing, "Voxel size in mm of a grid around the model; default 1")
-    ->check(Positive())
+    ->check(Length())
     ->excludes(like);
   AddParameterOptions(command, options->image);
   command->add_option("-o,--output", options->output, "Image to write (.nii.gz, .mha, .nrrd, ...)")->required();

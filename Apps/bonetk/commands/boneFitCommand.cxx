@@ -97,7 +97,7 @@ DescribeFit(Fit & fit, const CTImage & ct)
 void
 RunFit(const FitOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".vtu" });
+  VerifyOutputs({ { options.output, { ".vtu" } }, { options.report, {} } });
   const auto ct = ReadCT(options.ct);
   auto       fit = Fit::New();
   fit->SetImage(ct);

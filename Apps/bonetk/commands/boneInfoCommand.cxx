@@ -18,13 +18,6 @@ namespace bone
 {
 namespace
 {
-bool
-EndsIn(const std::string & path, const std::string & extension)
-{
-  return path.size() >= extension.size() &&
-         path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
-}
-
 std::string
 DescribeSurface(const TriangleSurface & surface)
 {

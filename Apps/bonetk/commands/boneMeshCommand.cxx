@@ -27,11 +27,7 @@ struct MeshOptions
 void
 RunMesh(const MeshOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".vtu" });
-  if (!options.correspondenceOutput.empty())
-  {
-    VerifyExtension(options.correspondenceOutput, { ".json" });
-  }
+  VerifyOutputs({ { options.output, { ".vtu" } }, { options.correspondenceOutput, { ".json" } } });
   if (options.ct.empty() && options.parameters.metric == TilingMetricKind::Density)
   {
     throw UsageError("--metric density needs --ct");

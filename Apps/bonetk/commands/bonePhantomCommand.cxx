@@ -41,6 +41,7 @@ MakeModel(const PhantomOptions & options)
 void
 RunPhantom(const PhantomOptions & options, Session & session)
 {
+  VerifyOutputs({ { options.output, ImageExtensions() }, { options.labels, ImageExtensions() } });
   using SourceType = PhantomImageSource<CTImage>;
   auto source = SourceType::New();
   source->SetModel(MakeModel(options));
@@ -71,9 +72,9 @@ AddPhantomCommand(CLI::App & app, Action & action)
   command->add_option("--surface", options->surface, "In place of --bone: a closed surface (.ply, .vtp, .stl)")
     ->excludes(bone);
   command->add_option("--subject", options->subject, "Seed of the subject; default 0, the mean subject");
-  command->add_option("--spacing", options->spacing, "Voxel size in mm; default 1")->check(Positive());
+  command->add_option("--spacing", options->spacing, "Voxel size in mm; default 1")->check(Length());
   command->add_option("--slice-spacing", options->sliceSpacing, "Distance of slices in mm; default: --spacing")
-    ->check(Positive());
+    ->check(Length());
   AddParameterOptions(command, options->image);
   command->add_option("-o,--output", options->output, "CT to write (.nii.gz, .mha, .nrrd, ...)")->required();
   command->add_option("--labels", options->labels, "Label map to write: 1 cortical, 2 trabecular, 3 medullary cavity");

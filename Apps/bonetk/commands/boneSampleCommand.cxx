@@ -73,7 +73,7 @@ Draw(const SampleOptions & options, const StatisticalModel & model, Eigen::Vecto
 void
 RunSample(const SampleOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".vtu" });
+  VerifyOutputs({ { options.output, { ".vtu" } } });
   const auto      model = ReadStatisticalModel(options.input);
   const auto &    content = model->GetContent();
   Eigen::VectorXd shape = Coefficients(options.shape, content.shape.GetNumberOfModes(), "--shape");

@@ -47,6 +47,7 @@ RunSimplify(const SimplifyOptions & options, Session & session)
 {
   TetraCollapseParameters parameters = options.parameters;
   Verify(parameters);
+  VerifyOutputs({ { options.prefix + ".hierarchy.json", {} } });
   const auto mesh = ReadDensityMesh(options.mesh);
   if (options.levels || (parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
                          parameters.maximumSurfaceDistances.empty()))

@@ -74,7 +74,7 @@ MakeSmoothing(const SmoothOptions & options)
 void
 RunSmooth(const SmoothOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".vtu" });
+  VerifyOutputs({ { options.output, { ".vtu" } } });
   const FilterType::Pointer filter = options.method == "quality" ? MakeQuality(options) : MakeSmoothing(options);
   const MeshType::Pointer   mesh = ReadDensityMesh(options.input);
   if (mesh->GetCells().HasDensity())

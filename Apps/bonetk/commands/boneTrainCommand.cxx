@@ -58,7 +58,7 @@ RegistrationLine(const SubjectFiles &           subject,
 void
 RunTrain(const TrainOptions & options, Session & session)
 {
-  VerifyExtension(options.output, { ".h5" });
+  VerifyOutputs({ { options.output, { ".h5" } } });
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
   const std::string               standard = options.standard.empty() ? subjects.front().shape : options.standard;
   if (standard.size() < 4 || standard.compare(standard.size() - 4, 4, ".vtu") != 0)

@@ -12,21 +12,21 @@ namespace bone
 {
 // clang-format off
 #define BONE_CONTOUR_SLICE_PARAMETERS(value, flag) \
-  value(double, meanSpacing, MeanSpacing, 0.0, ParameterRange::NotNegative(), "mm", "", \
+  value(double, meanSpacing, MeanSpacing, 0.0, ParameterRange::LengthOrZero(), "mm", "", \
     "Mean distance of the slices kept; 0: all are kept") \
   value(double, maximumGap, MaximumGap, 1.75, ParameterRange::AtLeast(1.0), "", "max-gap", \
     "Largest distance of neighbouring slices kept, in mean distances")
 
 #define BONE_CONTOUR_RESAMPLE_PARAMETERS(value, flag) \
-  value(double, tolerance, Tolerance, 0.2, ParameterRange::Positive(), "mm", "tolerance", \
+  value(double, tolerance, Tolerance, 0.2, ParameterRange::Length(), "mm", "tolerance", \
     "Largest distance of the given points to the spline, and of chords to it") \
   value(double, innerToleranceFactor, InnerToleranceFactor, 2.5, ParameterRange::Positive(), "", "inner-tolerance", \
     "Factor of the tolerance for the contours of inner layers") \
-  value(double, minimumSpacing, MinimumSpacing, 0.8, ParameterRange::Positive(), "mm", "least-spacing", \
+  value(double, minimumSpacing, MinimumSpacing, 0.8, ParameterRange::Length(), "mm", "least-spacing", \
     "Least distance of a contour's points") \
-  value(double, maximumSpacing, MaximumSpacing, 4.0, ParameterRange::Positive(), "mm", "contour-spacing", \
+  value(double, maximumSpacing, MaximumSpacing, 4.0, ParameterRange::Length(), "mm", "contour-spacing", \
     "Largest distance of a contour's points") \
-  value(double, minimumLayerDistance, MinimumLayerDistance, LeastLayerDistance, ParameterRange::NotNegative(), "mm", \
+  value(double, minimumLayerDistance, MinimumLayerDistance, LeastLayerDistance, ParameterRange::LengthOrZero(), "mm", \
     "layer-distance", "Least distance between a contour and the next inside it") \
   value(double, thinLayerRatio, ThinLayerRatio, 6.0, ParameterRange::Positive(), "", "layer-ratio", \
     "Largest distance of points against the distance of the next contour") \
@@ -36,7 +36,7 @@ namespace bone
     "The same for the tetrahedra of a tiling, as estimated")
 
 #define BONE_MEDIAL_AXIS_PARAMETERS(value, flag) \
-  value(double, spacing, Spacing, 0.0, ParameterRange::NotNegative(), "mm", "axis-spacing", \
+  value(double, spacing, Spacing, 0.0, ParameterRange::LengthOrZero(), "mm", "axis-spacing", \
     "Distance between samples of the axis; 0: the mean distance of the contour's points") \
   value(double, significance, Significance, 0.8, ParameterRange::Positive(), "", "axis-significance", \
     "An axis point counts where the contour between its two nearest points is longer than their straight distance by " \

@@ -38,9 +38,9 @@ struct ParameterChoices<DensityInterpolator>
   value(double, overshootLimit, OvershootLimit, 8.0, ParameterRange::NotNegativeOrInfinite(), \
     "ranges of the tetrahedron's data", "overshoot-limit", \
     "How far control values may lie beyond a tetrahedron's data") \
-  value(double, surfaceMargin, SurfaceMargin, 0.0, ParameterRange::NotNegative(), "mm", "surface-margin", \
+  value(double, surfaceMargin, SurfaceMargin, 0.0, ParameterRange::LengthOrZero(), "mm", "surface-margin", \
     "What lies nearer than this to the surface takes the value at this depth") \
-  value(double, interfaceMargin, InterfaceMargin, 0.0, ParameterRange::NotNegative(), "mm", "interface-margin", \
+  value(double, interfaceMargin, InterfaceMargin, 0.0, ParameterRange::LengthOrZero(), "mm", "interface-margin", \
     "The same for the faces between regions, from either side") \
   flag(holdOut, HoldOut, false, "", "One voxel in five plays no part in the fit") \
   value(DensityQuantity, quantity, Quantity, DensityQuantity::HounsfieldUnit, ParameterRange::Any(), "", "quantity", \

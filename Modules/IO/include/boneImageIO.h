@@ -45,6 +45,7 @@ void
 WriteImage(const LabelImage * image, const std::string & path);
 void
 WriteImage(const itk::Image<float, 2> * image, const std::string & path);
+/** Pictures are written as .png. */
 void
 WriteImage(const itk::Image<unsigned char, 2> * image, const std::string & path);
 void

@@ -5,6 +5,7 @@
 #define boneOutputTransaction_h
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ public:
   Take(const std::vector<Move> &        moves,
        const std::vector<std::string> & outOfDate,
        const std::shared_ptr<void> &    owner);
+
+  /** While it is held StopAll() waits: for what is temporary to be made and known, or gone and forgotten. */
+  static std::unique_lock<std::mutex>
+  Hold();
 
   /** For a thread that waits for signals, just before it ends the process: removes what is temporary; nothing is
    * renamed from here on. */

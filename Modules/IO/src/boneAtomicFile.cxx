@@ -104,6 +104,7 @@ AtomicFile::Temporary::Temporary(const std::string & path, const fs::path & targ
 {
   const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
   folder = (parent / ".bonetk-tmp-XXXXXX").string();
+  const auto hold = OutputTransaction::Hold();
   if (::mkdtemp(folder.data()) == nullptr)
   {
     throw IOError(path, "cannot write into the folder '" + parent.string() + "': " + ErrorText(errno));
@@ -128,6 +129,7 @@ AtomicFile::Temporary::Temporary(const std::string & path, const fs::path & targ
 
 AtomicFile::Temporary::~Temporary()
 {
+  const auto hold = OutputTransaction::Hold();
   if (slot >= 0 && Slots[slot].exchange(nullptr) == nullptr)
   {
     // The handler has the names and may be reading them still: they stay to the end of the process.

@@ -13,6 +13,12 @@ namespace bone
 {
 using nlohmann::json;
 
+namespace
+{
+/** Files that are read here have five levels; destroying a document goes as deep as it is nested. */
+constexpr int DeepestNesting = 100;
+} // namespace
+
 json
 ReadJsonFile(const std::string & path)
 {
@@ -20,7 +26,13 @@ ReadJsonFile(const std::string & path)
   std::ifstream stream(path, std::ios::binary);
   try
   {
-    return json::parse(stream);
+    return json::parse(stream, [&path](int depth, json::parse_event_t, json &) {
+      if (depth > DeepestNesting)
+      {
+        throw IOError(path, Say("is nested more than ", DeepestNesting, " levels deep: it is no file of this kind"));
+      }
+      return true;
+    });
   }
   catch (const json::exception & error)
   {

@@ -11,7 +11,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <mutex>
 #include <stdexcept>
 
 #include <sys/stat.h>
@@ -127,6 +126,12 @@ OutputTransaction::Take(const std::vector<Move> &        moves,
   all->m_Moves.insert(all->m_Moves.end(), moves.begin(), moves.end());
   all->m_OutOfDate.insert(all->m_OutOfDate.end(), outOfDate.begin(), outOfDate.end());
   all->m_Owners.push_back(owner);
+}
+
+std::unique_lock<std::mutex>
+OutputTransaction::Hold()
+{
+  return std::unique_lock<std::mutex>(RenameMutex());
 }
 
 void

@@ -5,9 +5,12 @@
 #define boneRefuse_h
 
 #include "boneIOError.h"
+#include "boneTypes.h"
 
+#include <algorithm>
 #include <new>
 #include <sstream>
+#include <vector>
 
 namespace bone
 {
@@ -28,6 +31,42 @@ Refuse(const TParts &... parts)
 {
   throw itk::ExceptionObject(__FILE__, __LINE__, Say(parts...));
 }
+
+/** \name Limits of what is read, in mm: a kilometre, which nothing lies away from a scanner's origin, and a micrometre,
+ * which no scanner of bones resolves. Beyond them a unit is mistaken, or a file damaged.
+ * \{ */
+constexpr double FarthestCoordinate = 1e6;
+constexpr double SmallestExtent = 1e-3;
+
+/** Throws where a coordinate of point number `id` is not finite or too far away. */
+inline void
+RequireSensible(const Vector3 & point, std::size_t id)
+{
+  if (!point.allFinite())
+  {
+    Refuse("point ", id, " has a coordinate that is not finite");
+  }
+  if (!(point.cwiseAbs().maxCoeff() <= FarthestCoordinate))
+  {
+    Refuse("point ",
+           id,
+           " has a coordinate of ",
+           point.cwiseAbs().maxCoeff(),
+           " mm, where a kilometre is the most: are its units mm?");
+  }
+}
+
+/** Throws where all points lie within a micrometre. */
+inline void
+RequireExtent(const std::vector<Vector3> & points)
+{
+  const auto apart = [&](const Vector3 & p) { return (p - points.front()).cwiseAbs().maxCoeff() > SmallestExtent; };
+  if (!points.empty() && std::none_of(points.begin(), points.end(), apart))
+  {
+    Refuse("all its points lie within ", SmallestExtent, " mm: are its units mm?");
+  }
+}
+/** \} */
 
 /** Runs action() and turns what ITK throws, and a lack of memory, into an IOError that names the file. */
 template <typename TAction>

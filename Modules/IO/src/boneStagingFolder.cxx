@@ -48,6 +48,7 @@ struct HiddenFolder
   }
   ~HiddenFolder()
   {
+    const auto                        hold = OutputTransaction::Hold();
     const std::lock_guard<std::mutex> lock(stagingMutex);
     stagingFolders.erase(std::remove(stagingFolders.begin(), stagingFolders.end(), path), stagingFolders.end());
     RemoveFolder(path);
@@ -73,6 +74,7 @@ StagingFolder::StagingFolder(const std::string & folder)
     throw IOError(folder, "cannot be made, there is no folder " + parent.string());
   }
   std::string pattern = (parent / ("." + named.filename().string() + "-XXXXXX")).string();
+  const auto  hold = OutputTransaction::Hold();
   if (mkdtemp(pattern.data()) == nullptr)
   {
     throw IOError(folder, "cannot be made in " + parent.string() + ": " + std::strerror(errno));

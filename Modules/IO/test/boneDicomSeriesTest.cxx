@@ -85,6 +85,21 @@ TEST_F(DicomSeriesTest, RefusesAMissingSlice)
   EXPECT_THAT(ErrorOfReading(), HasSubstr("slices are not evenly spaced"));
 }
 
+TEST_F(DicomSeriesTest, RefusesASliceThatIsCutShort)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    WriteSlice(Path(std::to_string(k) + ".dcm"), 10, 1.25 * k, 0, "1");
+  }
+  const std::string whole = ReadText("2.dcm");
+  for (const std::size_t bytes : { std::size_t{ 140 }, std::size_t{ 300 }, whole.size() / 2, whole.size() - 2 })
+  {
+    WriteText("2.dcm", whole.substr(0, bytes));
+    EXPECT_THAT(ErrorOfReading(), HasSubstr("2.dcm: is a DICOM file that is cut short")) << bytes;
+    EXPECT_THAT(ErrorOf([&] { ReadCT(Path("2.dcm")); }), HasSubstr("cut short")) << bytes;
+  }
+}
+
 TEST_F(DicomSeriesTest, RefusesATiltedGantry)
 {
   for (int k = 0; k < 5; ++k)

@@ -34,17 +34,17 @@ DefaultLevels()
     "Tetrahedra of the first level, about") \
   value(std::vector<double>, levels, Levels, DefaultLevels(), ParameterRange::Positive(), "", "levels", \
     "Coarser levels: numbers of tetrahedra, or shares of the first level") \
-  value(double, sliceStep, SliceStep, 0.0, ParameterRange::NotNegative(), "mm", "slice-step", \
+  value(double, sliceStep, SliceStep, 0.0, ParameterRange::LengthOrZero(), "mm", "slice-step", \
     "Mean distance of slices, which lie closer where the sections change; 0: chosen for --tetrahedra") \
   flag(regularSlices, RegularSlices, false, "regular-slices", \
     "Slices evenly spaced, --slice-step apart, and not more of them where the sections change") \
-  value(double, contourSpacing, ContourSpacing, 0.0, ParameterRange::NotNegative(), "mm", "contour-spacing", \
+  value(double, contourSpacing, ContourSpacing, 0.0, ParameterRange::LengthOrZero(), "mm", "contour-spacing", \
     "Largest distance of a contour's points; 0: chosen for --tetrahedra") \
-  value(double, cropMargin, CropMargin, 10.0, ParameterRange::NotNegative(), "mm", "margin", \
+  value(double, cropMargin, CropMargin, 10.0, ParameterRange::LengthOrZero(), "mm", "margin", \
     "The images are cut down to the label and this margin") \
-  value(double, probeStep, ProbeStep, 5.0, ParameterRange::Positive(), "mm", "", \
+  value(double, probeStep, ProbeStep, 5.0, ParameterRange::Length(), "mm", "", \
     "Slice step of the contours that tell how large a bone is that has no label map") \
-  value(double, largestDistanceBound, LargestDistanceBound, MeshQualityParameters().distanceBound, ParameterRange::NotNegative(), "mm", "", \
+  value(double, largestDistanceBound, LargestDistanceBound, MeshQualityParameters().distanceBound, ParameterRange::LengthOrZero(), "mm", "", \
     "How far the quality stage may move surfaces, half a pixel of the slices at most")
 // clang-format on
 

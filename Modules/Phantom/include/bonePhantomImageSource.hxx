@@ -5,6 +5,7 @@
 #define bonePhantomImageSource_hxx
 
 #include "bonePhantomImageSource.h"
+#include "boneVoxelGrid.h"
 
 #include "boneLabelValue.h"
 
@@ -122,6 +123,12 @@ PhantomImageSource<TOutputImage>::FitGrid(PointType & origin, SizeType & size) c
     {
       first[a] = 0.5 * (lower + upper - whole * m_Spacing[a]);
     }
+  }
+  const double voxels = static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+  if (!(voxels <= LargestNumberOfVoxels))
+  {
+    itkExceptionMacro("The image would have " << voxels << " voxels, where " << LargestNumberOfVoxels
+                                              << " are the most; use a larger spacing than " << m_Spacing << " mm.");
   }
   const Vector3 point = axes * first;
   std::copy(point.data(), point.data() + 3, origin.Begin());

@@ -14,7 +14,7 @@ namespace bone
     "The bone's value in the label map; 0: every value but 0") \
   value(int, iterations, Iterations, 4, ParameterRange::AtLeast(0), "", "iterations", \
     "Smoothing iterations at the start") \
-  value(double, distanceBound, DistanceBound, 0.3, ParameterRange::NotNegative(), "mm", "distance", \
+  value(double, distanceBound, DistanceBound, 0.3, ParameterRange::LengthOrZero(), "mm", "distance", \
     "How far boundary and interfaces may be from the first ones; 0: they stay as they are") \
   value(int, fairingIterations, FairingIterations, 10, ParameterRange::AtLeast(0), "", "fairing-iterations", \
     "Steps that fair the surfaces") \

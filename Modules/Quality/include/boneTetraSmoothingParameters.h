@@ -26,7 +26,7 @@ struct ParameterChoices<SmoothingMethod>
   value(SmoothingMethod, method, Method, SmoothingMethod::Enhanced, ParameterRange::Any(), "", "", \
     "enhanced keeps the shape; smart and laplacian shrink it, laplacian may invert cells") \
   value(int, iterations, Iterations, 10, ParameterRange::AtLeast(0), "", "iterations", "Passes over all points") \
-  value(double, distanceBound, DistanceBound, 0.3, ParameterRange::NotNegative(), "mm", "distance", \
+  value(double, distanceBound, DistanceBound, 0.3, ParameterRange::LengthOrZero(), "mm", "distance", \
     "How far boundary and interfaces may be faired; 0: not") \
   value(int, fairingIterations, FairingIterations, 10, ParameterRange::AtLeast(0), "", "fairing-iterations", \
     "Steps that fair the surfaces") \

@@ -40,6 +40,9 @@ struct VoxelGrid
   }
 };
 
+/** More voxels than any scan has, and 4 GB of an image of floats: who asks for more has mistaken a unit. */
+constexpr double LargestNumberOfVoxels = 1e9;
+
 /** The grid of a region of an image. */
 VoxelGrid
 MakeVoxelGrid(const itk::ImageBase<3> & image, const itk::ImageRegion<3> & region);

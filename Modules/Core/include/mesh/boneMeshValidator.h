@@ -48,6 +48,10 @@ struct MeshValidation
  * Cost O(n log n). */
 MeshValidation
 ValidateMesh(const MeshArrays & mesh);
+/** What no algorithm on meshes can work with, in one line: the first failure of check 1 or 3 of ValidateMesh. Empty
+ * where there is none. */
+std::string
+FindTopologyObstacle(const MeshArrays & mesh);
 } // namespace bone
 
 #endif

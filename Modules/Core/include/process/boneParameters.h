@@ -43,6 +43,7 @@ struct ParameterRange
   double upper{ std::numeric_limits<double>::infinity() };
   bool   open{ false };     ///< without the lower end itself
   bool   infinite{ false }; ///< infinity is a value
+  double least{ 0.0 };      ///< a value that is not 0 is at least so large
 
   static constexpr ParameterRange
   Any()
@@ -58,6 +59,18 @@ struct ParameterRange
   NotNegative()
   {
     return { 0.0, std::numeric_limits<double>::infinity(), false, false };
+  }
+  /** A length in mm: from a micrometre, which no scanner of bones resolves, to ten metres, which no bone has. */
+  static constexpr ParameterRange
+  Length()
+  {
+    return { 0.001, 10000.0, false, false };
+  }
+  /** 0, or such a length. */
+  static constexpr ParameterRange
+  LengthOrZero()
+  {
+    return { 0.0, 10000.0, false, false, 0.001 };
   }
   /** 0 or more, or infinity. */
   static constexpr ParameterRange
@@ -85,7 +98,8 @@ struct ParameterRange
   bool
   Contains(double x) const
   {
-    return (open ? x > lower : x >= lower) && x <= upper && (infinite || std::isfinite(x));
+    return (open ? x > lower : x >= lower) && x <= upper && (infinite || std::isfinite(x)) &&
+           (x == 0.0 || std::abs(x) >= least);
   }
 
   /** In words that follow "must be": "above 0", "0 to 8". */

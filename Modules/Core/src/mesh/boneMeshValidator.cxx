@@ -573,4 +573,17 @@ ValidateMesh(const MeshArrays & mesh)
   CheckVoids(mesh, boundary, body, begin("voids"));
   return result;
 }
+
+std::string
+FindTopologyObstacle(const MeshArrays & mesh)
+{
+  MeshValidation result;
+  result.checks = { { "ids", 0, {} }, { "face manifold", 0, {} } };
+  if (IdsInRange(mesh, result.checks[0]))
+  {
+    CheckDistinct(mesh, result.checks[0]);
+    CheckFaces(SortedFaces(mesh.tetrahedra), result.checks[1]);
+  }
+  return result.IsValid() ? "" : result.Summary();
+}
 } // namespace bone

@@ -11,7 +11,11 @@ ParameterRange::Describe() const
   std::ostringstream text;
   const bool         below = std::isfinite(upper);
   const bool         above = std::isfinite(lower);
-  if (above && below)
+  if (least > 0.0)
+  {
+    text << "0, or " << least << " to " << upper;
+  }
+  else if (above && below)
   {
     text << (open ? "above " : "") << lower << (open ? " and at most " : " to ") << upper;
   }

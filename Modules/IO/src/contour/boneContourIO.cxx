@@ -7,6 +7,7 @@
 #include "boneContourImage.h"
 #include "boneMarkups.h"
 #include "bonePolylines.h"
+#include "boneDicomFile.h"
 #include "boneStructureSet.h"
 #include "boneVtkArrays.h"
 #include "boneVtkFile.h"
@@ -72,10 +73,7 @@ CellPoints(vtkPolyData * data, vtkCellArray * cells, vtkIdType cell)
       Refuse("a polyline names point ", ids[i], " where there are ", data->GetNumberOfPoints(), " points");
     }
     data->GetPoint(ids[i], points[i].data());
-    if (!points[i].allFinite())
-    {
-      Refuse("point ", ids[i], " has a coordinate that is not finite");
-    }
+    RequireSensible(points[i], static_cast<std::size_t>(ids[i]));
   }
   return points;
 }

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneStructureSet.h"
 
+#include "boneDicomFile.h"
 #include "boneRefuse.h"
 
 #include <gdcmAttribute.h>
@@ -11,7 +12,6 @@
 #include <gdcmTrace.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 
 namespace bone
@@ -86,10 +86,7 @@ ClosedPlanar(const gdcm::DataSet & item)
   for (unsigned int i = 0; i + 2 < data.GetNumberOfValues(); i += 3)
   {
     const Vector3 point(data.GetValue(i), data.GetValue(i + 1), data.GetValue(i + 2));
-    if (!point.allFinite())
-    {
-      Refuse("a contour has a point that is not finite");
-    }
+    RequireSensible(point, i / 3);
     if (points.empty() || !Same(points.back(), point))
     {
       points.push_back(point);
@@ -122,16 +119,6 @@ RemoveSpikes(std::vector<Vector3> & walk)
 }
 } // namespace
 
-bool
-IsDicomFile(const std::string & path)
-{
-  std::ifstream stream(path, std::ios::binary);
-  char          mark[4] = {};
-  stream.seekg(128);
-  stream.read(mark, 4);
-  return stream.good() && std::string(mark, 4) == "DICM";
-}
-
 std::vector<std::vector<Vector3>>
 TakeKeyholesApart(std::vector<Vector3> contour)
 {
@@ -161,6 +148,7 @@ TakeKeyholesApart(std::vector<Vector3> contour)
 std::vector<Polyline>
 ReadStructure(const std::string & path, const std::string & name)
 {
+  RequireWholeDicomFile(path);
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   gdcm::Reader reader;

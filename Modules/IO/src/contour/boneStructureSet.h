@@ -10,10 +10,6 @@
 
 namespace bone
 {
-/** True where the file has DICOM's mark, 128 bytes in. */
-bool
-IsDicomFile(const std::string & path);
-
 /** The closed planar contours of one structure of a DICOM RT structure set, in LPS; see ReadContours. Throws
  * itk::ExceptionObject. */
 std::vector<Polyline>

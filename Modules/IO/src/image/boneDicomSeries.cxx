@@ -1,6 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneDicomFile.h"
 #include "boneImageFile.h"
 #include "boneRefuse.h"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace bone
 {
@@ -23,9 +25,23 @@ using Vector = itk::Vector<double, 3>;
 // How far a slice may lie from its place on an even grid, as part of the spacing.
 constexpr double PositionTolerance = 0.05;
 
+void
+RequireWholeDicomFiles(const std::string & folder)
+{
+  std::error_code error;
+  for (const auto & entry : std::filesystem::directory_iterator(folder, error))
+  {
+    if (entry.is_regular_file(error) && IsDicomFile(entry.path().string()))
+    {
+      RequireWholeDicomFile(entry.path().string());
+    }
+  }
+}
+
 std::vector<std::string>
 SeriesFiles(const std::string & folder)
 {
+  RequireWholeDicomFiles(folder);
   auto names = itk::GDCMSeriesFileNames::New();
   names->SetUseSeriesDetails(true);
   names->SetDirectory(folder);

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneImageCheck.h"
 
+#include "boneImageHeader.h"
 #include "boneVtkFile.h"
 
 #include <itk_zlib.h>
@@ -13,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <vector>
@@ -204,14 +204,6 @@ Inflates(const fs::path & path, std::size_t offset, std::size_t numberOfBytes)
   return state == Z_STREAM_END && bytes == numberOfBytes;
 }
 
-std::string
-Trim(const std::string & text)
-{
-  const char * blanks = " \t\r";
-  const auto   first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 /** Whether the names that follow are those of files, and there are some. */
 bool
 ListedFilesExist(std::istream & names, const fs::path & folder)
@@ -242,14 +234,9 @@ IsFilePattern(const std::string & data)
 ImageFileCheck
 CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
 {
-  ImageFileCheck                     check;
-  std::ifstream                      stream(path, std::ios::binary);
-  std::map<std::string, std::string> fields;
-  for (std::string line; fields.count("ElementDataFile") == 0 && std::getline(stream, line);)
-  {
-    const auto equals = line.find('=');
-    fields[Trim(line.substr(0, equals))] = equals == std::string::npos ? "" : Trim(line.substr(equals + 1));
-  }
+  ImageFileCheck    check;
+  std::ifstream     stream(path, std::ios::binary);
+  auto              fields = ReadMetaHeader(stream);
   const std::string data = fields["ElementDataFile"];
   const auto isTrue = [](const std::string & text) { return !text.empty() && (text[0] == 'T' || text[0] == 't'); };
   if (data.rfind("LIST", 0) == 0 || data.find('%') != std::string::npos)
@@ -281,18 +268,9 @@ CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
 ImageFileCheck
 CheckNrrd(const std::string & path, std::size_t numberOfBytes)
 {
-  ImageFileCheck                     check;
-  std::ifstream                      stream(path, std::ios::binary);
-  std::map<std::string, std::string> fields;
-  std::string                        line;
-  while (std::getline(stream, line) && !Trim(line).empty())
-  {
-    const auto colon = line.find(':');
-    if (colon != std::string::npos && line[0] != '#' && line.compare(colon, 2, ":=") != 0)
-    {
-      fields[Trim(line.substr(0, colon))] = Trim(line.substr(colon + 1));
-    }
-  }
+  ImageFileCheck    check;
+  std::ifstream     stream(path, std::ios::binary);
+  auto              fields = ReadNrrdHeader(stream);
   const std::string data = fields["data file"] + fields["datafile"], encoding = fields["encoding"];
   const bool        skips =
     fields.count("line skip") + fields.count("lineskip") + fields.count("byte skip") + fields.count("byteskip") > 0;

@@ -1,9 +1,12 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneDicomFile.h"
 #include "boneImageCheck.h"
 #include "boneImageFile.h"
+#include "boneImageHeader.h"
 #include "boneLabelValue.h"
+#include "boneParameters.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
@@ -35,6 +38,11 @@ itk::ImageIOBase::Pointer
 OpenImage(const std::string & path)
 {
   RequireReadableFile(path);
+  if (IsDicomFile(path))
+  {
+    RequireWholeDicomFile(path);
+  }
+  RequireSensibleHeader(path);
   auto io = itk::ImageIOFactory::CreateImageIO(path.c_str(), itk::IOFileModeEnum::ReadMode);
   if (io.IsNull())
   {
@@ -120,6 +128,36 @@ LoadImage(const std::string & path, itk::ImageIOBase * io)
   return image;
 }
 
+/** A grid in millimetres, near enough to the scanner's origin. */
+void
+RequireSensibleGrid(const std::string & path, const CTImage * image)
+{
+  const auto length = ParameterRange::Length();
+  for (unsigned int d = 0; d < 3; ++d)
+  {
+    const double spacing = image->GetSpacing()[d];
+    if (!length.Contains(spacing))
+    {
+      throw IOError(path,
+                    Say("has voxels of ",
+                        spacing,
+                        " mm, where from ",
+                        length.lower,
+                        " to ",
+                        length.upper,
+                        " mm are possible: are its units mm?"));
+    }
+    if (!(std::abs(image->GetOrigin()[d]) <= FarthestCoordinate))
+    {
+      throw IOError(path,
+                    Say("lies ",
+                        image->GetOrigin()[d],
+                        " mm from the origin, where a kilometre is the most: are its "
+                        "units mm?"));
+    }
+  }
+}
+
 CTImage::Pointer
 ReadVolume(const std::string & path)
 {
@@ -169,6 +207,7 @@ ReadCT(const std::string & path)
 {
   const auto image = ReadVolume(path);
   RequireFinite(image, path);
+  RequireSensibleGrid(path, image);
   return image;
 }
 
@@ -178,6 +217,7 @@ ReadLabels(const std::string & path)
   using Limits = std::numeric_limits<LabelImage::PixelType>;
   const auto values = ReadVolume(path);
   RequireFinite(values, path);
+  RequireSensibleGrid(path, values);
   auto labels = LabelImage::New();
   labels->CopyInformation(values);
   labels->SetRegions(values->GetBufferedRegion());

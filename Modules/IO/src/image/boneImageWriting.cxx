@@ -5,9 +5,12 @@
 #include "boneImageCheck.h"
 #include "boneImageFile.h"
 #include "boneRefuse.h"
+#include "boneVtkFile.h"
 
 #include <itkImageFileWriter.h>
 #include <itkImageIOFactory.h>
+
+#include <png.h>
 
 #include <filesystem>
 #include <vector>
@@ -50,6 +53,34 @@ ReadBack(const std::string & file, std::size_t numberOfPixels)
     std::vector<char> buffer(io->GetImageSizeInBytes());
     io->Read(buffer.data());
   }
+}
+
+/** The file of a picture: ITK's writer crashes on a full disk. */
+std::string
+ToPng(const void * pixels, const itk::ImageRegion<2> & region, png_uint_32 format)
+{
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(region.GetSize(0));
+  image.height = static_cast<png_uint_32>(region.GetSize(1));
+  image.format = format;
+  std::string      bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels, 0, nullptr) == 0)
+  {
+    Refuse("cannot be made a PNG file: ", image.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+template <typename TImage>
+void
+WritePicture(const TImage * image, const std::string & path, png_uint_32 format)
+{
+  RequireExtension(path, { ".png" });
+  WriteFileAtomically(
+    path, NamingFile(path, [&] { return ToPng(image->GetBufferPointer(), image->GetBufferedRegion(), format); }));
 }
 
 template <typename TImage>
@@ -102,12 +133,12 @@ WriteImage(const itk::Image<float, 2> * image, const std::string & path)
 void
 WriteImage(const itk::Image<unsigned char, 2> * image, const std::string & path)
 {
-  Write(image, path, true);
+  WritePicture(image, path, PNG_FORMAT_GRAY);
 }
 
 void
 WriteImage(const PictureImage * image, const std::string & path)
 {
-  Write(image, path, true);
+  WritePicture(image, path, PNG_FORMAT_RGB);
 }
 } // namespace bone

@@ -211,11 +211,9 @@ ReadPoints(vtkUnstructuredGrid * grid, MeshArrays & mesh)
   for (vtkIdType p = 0; p < np; ++p)
   {
     grid->GetPoint(p, mesh.points[p].data());
-    if (!mesh.points[p].allFinite())
-    {
-      Refuse("point ", p, " has a coordinate that is not finite");
-    }
+    RequireSensible(mesh.points[p], static_cast<std::size_t>(p));
   }
+  RequireExtent(mesh.points);
 }
 
 void
@@ -305,20 +303,20 @@ ReadAttributes(vtkUnstructuredGrid * grid, MeshArrays & mesh)
     const auto highest = static_cast<long long>(DensityQuantity::ApparentGramPerCubicCentimetre);
     mesh.quantity = static_cast<DensityQuantity>(WholeNumber(quantity, 0, 0, 0, highest));
   }
+  mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
   if (auto * neighbors = FindArray(grid->GetCellData(), ArrayNames::FaceNeighbors, nt, 4))
   {
-    mesh.neighbors.resize(mesh.tetrahedra.size());
-    for (vtkIdType t = 0; t < nt; ++t)
+    for (vtkIdType i = 0; i < 4 * nt; ++i)
     {
-      for (int i = 0; i < 4; ++i)
+      if (WholeNumber(neighbors, i / 4, static_cast<int>(i % 4), -1, nt - 1) != mesh.neighbors[i / 4][i % 4])
       {
-        mesh.neighbors[t][i] = static_cast<IdType>(WholeNumber(neighbors, t, i, -1, nt - 1));
+        Refuse("the array '",
+               ArrayNames::FaceNeighbors,
+               "' is not that of these tetrahedra (see ",
+               i / 4,
+               "): remove it, as it is made anew where it is missing");
       }
     }
-  }
-  else
-  {
-    mesh.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
   }
 }
 } // namespace

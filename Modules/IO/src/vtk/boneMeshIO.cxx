@@ -5,6 +5,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneConversions.h"
+#include "boneMeshValidator.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
@@ -45,11 +46,9 @@ ToTriangles(vtkPolyData * polygons)
   for (vtkIdType p = 0; p < data->GetNumberOfPoints(); ++p)
   {
     data->GetPoint(p, surface.points[p].data());
-    if (!surface.points[p].allFinite())
-    {
-      Refuse("point ", p, " has a coordinate that is not finite");
-    }
+    RequireSensible(surface.points[p], static_cast<std::size_t>(p));
   }
+  RequireExtent(surface.points);
   vtkCellArray * cells = data->GetPolys();
   for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
   {
@@ -139,8 +138,14 @@ WriteMeshArrays(const MeshArrays & mesh, const std::string & path)
 DensityMesh<double>::Pointer
 ReadDensityMesh(const std::string & path)
 {
+  MeshArrays        arrays = ReadMeshArrays(path);
+  const std::string obstacle = FindTopologyObstacle(arrays);
+  if (!obstacle.empty())
+  {
+    throw IOError(path, "is no mesh to work with: " + obstacle + "; bonetk validate lists all that is wrong");
+  }
   auto mesh = DensityMesh<double>::New();
-  mesh->SetArrays(ReadMeshArrays(path));
+  mesh->SetArrays(std::move(arrays));
   return mesh;
 }
 

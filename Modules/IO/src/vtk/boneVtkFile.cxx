@@ -14,6 +14,7 @@
 #include <vtkOutputWindow.h>
 #include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
+#include <vtkXMLParser.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -163,6 +164,63 @@ protected:
   }
 };
 
+/** Looks how deep a file's elements are nested, which VTK's readers follow by recursion; not whether it is well formed.
+ */
+class DepthParser : public vtkXMLParser
+{
+public:
+  vtkTypeMacro(DepthParser, vtkXMLParser);
+  static constexpr int Deepest = 100; ///< files of VTK and RTK have eight levels
+
+  static DepthParser *
+  New()
+  {
+    auto * parser = new DepthParser;
+    parser->InitializeObjectBase();
+    return parser;
+  }
+  bool
+  IsTooDeep() const
+  {
+    return m_Deepest > Deepest;
+  }
+
+protected:
+  void
+  StartElement(const char *, const char **) override
+  {
+    m_Deepest = std::max(m_Deepest, ++m_Depth);
+  }
+  void
+  EndElement(const char *) override
+  {
+    --m_Depth;
+  }
+  int
+  ParsingComplete() override
+  {
+    return this->IsTooDeep() ? 1 : vtkXMLParser::ParsingComplete();
+  }
+
+private:
+  int m_Depth{ 0 };
+  int m_Deepest{ 0 };
+};
+
+void
+RequireShallowXml(const std::string & path)
+{
+  const QuietVtk      quiet;
+  vtkNew<DepthParser> parser;
+  parser->SetIgnoreCharacterData(1);
+  parser->SetFileName(path.c_str());
+  parser->Parse();
+  if (parser->IsTooDeep())
+  {
+    throw IOError(path, "has elements nested more than " + std::to_string(DepthParser::Deepest) + " levels deep");
+  }
+}
+
 template <typename TReader>
 auto
 ReadWith(TReader * reader, MessageCatcher * messages, const std::string & path, const char * kind)
@@ -184,6 +242,8 @@ template <typename TReader>
 auto
 ReadXmlWith(const std::string & path, const char * kind)
 {
+  RequireReadableFile(path);
+  RequireShallowXml(path);
   vtkNew<MessageCatcher>       messages;
   vtkNew<PieceReader<TReader>> reader;
   reader->SetReaderErrorObserver(messages);
@@ -238,7 +298,11 @@ RequireReadableFile(const std::string & path)
   {
     throw IOError(path, "is a folder: name a file");
   }
-  if (fs::is_regular_file(status) && fs::file_size(path, error) == 0)
+  if (!fs::is_regular_file(status))
+  {
+    throw IOError(path, "is no regular file (a pipe or a device): write it to one first");
+  }
+  if (fs::file_size(path, error) == 0)
   {
     throw IOError(path, "is empty");
   }
@@ -276,6 +340,7 @@ vtkSmartPointer<vtkXMLDataElement>
 ReadXmlFile(const std::string & path)
 {
   RequireReadableFile(path);
+  RequireShallowXml(path);
   const QuietVtk quiet;
   return vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
 }

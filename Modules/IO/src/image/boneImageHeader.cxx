@@ -1,0 +1,199 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneImageHeader.h"
+
+#include "boneRefuse.h"
+#include "boneVtkFile.h"
+
+#include <itk_zlib.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+namespace bone
+{
+namespace
+{
+/** Counts, positions and spacings beyond this are none: a kilometre in micrometres. */
+constexpr double LargestNumber = 1e9;
+/** Longer headers are none. */
+constexpr std::size_t MostFields = 10000;
+constexpr std::size_t LongestLine = std::size_t{ 1 } << 20;
+
+bool
+GetField(std::istream & stream, std::string & line, std::size_t fields)
+{
+  return fields < MostFields && std::getline(stream, line) && line.size() < LongestLine;
+}
+
+/** The first number of a field, or of a list in it, that is not finite or too large; empty where there is none. */
+std::string
+FindWildNumber(std::string text)
+{
+  for (char & c : text)
+  {
+    c = std::strchr("(),;", c) != nullptr ? ' ' : c;
+  }
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+  {
+    char *       end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (*end == '\0' && !(std::abs(value) <= LargestNumber))
+    {
+      return word;
+    }
+  }
+  return "";
+}
+
+void
+RequireNumbers(const std::string &                        path,
+               const std::map<std::string, std::string> & fields,
+               const std::set<std::string> &              names,
+               double                                     mostDimensions)
+{
+  for (const auto & [name, text] : fields)
+  {
+    const std::string wild = names.count(name) > 0 ? FindWildNumber(text) : "";
+    if (!wild.empty())
+    {
+      throw IOError(path, "is no readable image: its header's '" + name + "' holds " + wild);
+    }
+    const bool dimensions = name == "NDims" || name == "dimension";
+    if (dimensions && !(std::strtod(text.c_str(), nullptr) <= mostDimensions))
+    {
+      throw IOError(path, "is no image of three dimensions: its header's '" + name + "' is " + text);
+    }
+    if (name == "ElementNumberOfChannels" && std::strtod(text.c_str(), nullptr) != 1.0)
+    {
+      throw IOError(path, "has " + text + " components per voxel where one value is needed");
+    }
+  }
+}
+
+template <typename T>
+T
+At(const std::array<char, 348> & header, std::size_t offset, bool swapped)
+{
+  std::array<char, sizeof(T)> bytes;
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+  {
+    bytes[i] = header[offset + (swapped ? sizeof(T) - 1 - i : i)];
+  }
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof(T));
+  return value;
+}
+
+/** Offsets as in nifti1.h. */
+void
+RequireSensibleNifti(const std::string & path)
+{
+  const gzFile          file = gzopen(path.c_str(), "rb");
+  std::array<char, 348> header{};
+  const int             read = file != nullptr ? gzread(file, header.data(), header.size()) : 0;
+  gzclose(file);
+  const auto dimensions = At<std::int16_t>(header, 40, false);
+  const bool swapped = dimensions < 1 || dimensions > 7;
+  if (read != static_cast<int>(header.size()) || At<std::int32_t>(header, 0, swapped) != 348)
+  {
+    return;
+  }
+  const auto require = [&](const char * name, std::size_t first, int count) {
+    for (int i = 0; i < count; ++i)
+    {
+      const float value = At<float>(header, first + 4 * static_cast<std::size_t>(i), swapped);
+      if (!(std::abs(value) <= LargestNumber))
+      {
+        throw IOError(path, Say("is no readable image: its header's ", name, " holds ", value));
+      }
+    }
+  };
+  require("voxel sizes (pixdim)", 80, 3);
+  require("scale (scl_slope, scl_inter)", 112, 2);
+  if (At<std::int16_t>(header, 252, swapped) > 0)
+  {
+    require("position (qform)", 256, 6);
+  }
+  if (At<std::int16_t>(header, 254, swapped) > 0)
+  {
+    require("position (sform)", 280, 12);
+  }
+}
+} // namespace
+
+std::string
+Trim(const std::string & text)
+{
+  const char * blanks = " \t\r";
+  const auto   first = text.find_first_not_of(blanks);
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::map<std::string, std::string>
+ReadMetaHeader(std::istream & stream)
+{
+  std::map<std::string, std::string> fields;
+  std::string                        line;
+  while (fields.count("ElementDataFile") == 0 && GetField(stream, line, fields.size()))
+  {
+    const auto equals = line.find('=');
+    fields[Trim(line.substr(0, equals))] = equals == std::string::npos ? "" : Trim(line.substr(equals + 1));
+  }
+  return fields;
+}
+
+std::map<std::string, std::string>
+ReadNrrdHeader(std::istream & stream)
+{
+  std::map<std::string, std::string> fields;
+  std::string                        line;
+  while (GetField(stream, line, fields.size()) && !Trim(line).empty())
+  {
+    const auto colon = line.find(':');
+    if (colon != std::string::npos && line[0] != '#' && line.compare(colon, 2, ":=") != 0)
+    {
+      fields[Trim(line.substr(0, colon))] = Trim(line.substr(colon + 1));
+    }
+  }
+  return fields;
+}
+
+void
+RequireSensibleHeader(const std::string & path)
+{
+  std::ifstream stream(path, std::ios::binary);
+  if (HasExtension(path, ".mha") || HasExtension(path, ".mhd"))
+  {
+    RequireNumbers(path,
+                   ReadMetaHeader(stream),
+                   { "TransformMatrix",
+                     "Rotation",
+                     "Orientation",
+                     "Offset",
+                     "Position",
+                     "Origin",
+                     "CenterOfRotation",
+                     "ElementSpacing",
+                     "ElementSize",
+                     "DimSize",
+                     "HeaderSize" },
+                   10.0);
+  }
+  else if (HasExtension(path, ".nrrd") || HasExtension(path, ".nhdr"))
+  {
+    RequireNumbers(
+      path, ReadNrrdHeader(stream), { "sizes", "spacings", "space directions", "space origin", "dimension" }, 16.0);
+  }
+  else
+  {
+    RequireSensibleNifti(path);
+  }
+}
+} // namespace bone

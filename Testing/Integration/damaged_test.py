@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""Files that are damaged, and numbers that no bone has: one line, no crash, no hang, nothing half-written."""
+import os
+import signal
+import struct
+import subprocess
+
+import numpy
+
+from bonetk_testing import BONETK, TestCase, main, write_image
+
+
+class Damaged(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.succeed("phantom", "--spacing", 3, "-o", "ct.mha", "--labels", "l.nii.gz")
+        self.contours = ["contours", "ct.mha", "--labels", "l.nii.gz", "--slice-step", 6]
+
+    def mesh(self):
+        self.succeed(*self.contours, "-o", "c.vtp")
+        self.succeed("mesh", "c.vtp", "-o", "m.vtu")
+
+    def patched(self, source, target, offset, data):
+        with open(source, "rb") as file:
+            content = bytearray(file.read())
+        content[offset:offset + len(data)] = data
+        with open(target, "wb") as file:
+            file.write(content)
+        return target
+
+    def test_wild_numbers_in_a_nifti_header(self):
+        write_image("x.nii", numpy.zeros((8, 8, 8), numpy.int16))
+        for offset in (80, 280, 284, 292, 324):
+            for number in (float("nan"), float("inf"), 3e38):
+                name = self.patched("x.nii", "wild.nii", offset, struct.pack("<f", number))
+                self.refuse("info", name, says="wild.nii")
+        for number in (1e6, 1e-4):
+            write_image("unit.nii", numpy.ones((8, 8, 8), numpy.int16), (number,) * 3)
+            self.refuse("build", "unit.nii", "--labels", "unit.nii", "-o", "out", says="unit.nii")
+
+    def test_wild_numbers_in_a_metaimage_header(self):
+        header = {"ObjectType": "Image", "NDims": "3", "BinaryData": "True", "TransformMatrix": "1 0 0 0 1 0 0 0 1",
+                  "Offset": "0 0 0", "ElementSpacing": "1 1 1", "DimSize": "4 4 4", "ElementType": "MET_SHORT",
+                  "ElementNumberOfChannels": "1", "ElementDataFile": "x.raw"}
+        with open("x.raw", "wb") as file:
+            file.write(bytes(128))
+
+        def write(name, **changes):
+            with open(name, "w") as file:
+                file.writelines(f"{key} = {value}\n" for key, value in {**header, **changes}.items())
+        write("x.mhd")
+        self.succeed("info", "x.mhd")
+        for field, wrong in (("NDims", "1e9"), ("NDims", "1000000000"), ("ElementNumberOfChannels", "3000000000"),
+                             ("TransformMatrix", "inf 0 0 0 1 0 0 0 1"), ("TransformMatrix", "nan 0 0 0 1 0 0 0 1"),
+                             ("Offset", "0 0 1e300"), ("ElementSpacing", "1e30 1 1"), ("ElementSpacing", "0 0 0"),
+                             ("DimSize", "4 4 4000000000"), ("ElementDataFile", "%d.raw"), ("ElementDataFile", "LIST"),
+                             ("ElementDataFile", "%d.raw 1 4 0")):
+            write("wild.mhd", **{field: wrong})
+            self.refuse("info", "wild.mhd", says="wild.mhd")
+
+    def test_files_nested_deep(self):
+        with open("deep.json", "w") as file:
+            file.write("[" * 1000000)
+        self.refuse("drr", "ct.mha", "--geometry", "deep.json", "-o", "o.mha", says="deep.json")
+        for name, command in (("deep.vtu", ["info"]), ("deep.vtp", ["mesh", "-o", "o.vtu"]),
+                              ("deep.xml", ["drr", "ct.mha", "-o", "o.mha", "--geometry"])):
+            with open(name, "w") as file:
+                file.write("<VTKFile>" + "<a>" * 1000000)
+            self.refuse(*command, name, says=name)
+
+    def test_meshes_of_no_size(self):
+        self.mesh()
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+        def change(action):
+            reader = vtkXMLUnstructuredGridReader()
+            reader.SetFileName("m.vtu")
+            reader.Update()
+            grid = reader.GetOutput()
+            action(grid)
+            writer = vtkXMLUnstructuredGridWriter()
+            writer.SetInputData(grid)
+            writer.SetFileName("changed.vtu")
+            writer.Write()
+
+        for factor in (1e30, 1e160, 1e-200):
+            def scale(grid):
+                points = vtk_to_numpy(grid.GetPoints().GetData()) * factor
+                grid.GetPoints().SetData(numpy_to_vtk(points, deep=True))
+            change(scale)
+            for command in ("smooth", "simplify"):
+                self.refuse(command, "changed.vtu", "-o", "o.vtu", says="changed.vtu")
+
+        def neighbours(grid):
+            array = vtk_to_numpy(grid.GetCellData().GetArray("FaceNeighbors"))
+            array[:] = numpy.random.default_rng(1).integers(0, len(array), array.shape)
+        change(neighbours)
+        self.refuse("smooth", "changed.vtu", "-o", "o.vtu", says="FaceNeighbors")
+
+        def themselves(grid):
+            array = vtk_to_numpy(grid.GetCellData().GetArray("FaceNeighbors"))
+            array[:] = numpy.arange(len(array))[:, None]
+        change(themselves)
+        self.refuse("smooth", "changed.vtu", "-o", "o.vtu", says="FaceNeighbors")
+
+        def twice(grid):
+            cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
+            cells[4:8] = cells[0:4]
+            grid.GetCellData().RemoveArray("FaceNeighbors")
+        change(twice)
+        for command in ("smooth", "simplify"):
+            self.refuse(command, "changed.vtu", "-o", "o.vtu", says="changed.vtu")
+
+    def test_numbers_that_no_bone_has(self):
+        self.mesh()
+        for command in (["smooth", "m.vtu", "--distance", "1e300", "-o", "o.vtu"],
+                        ["voxels", "m.vtu", "--spacing", "1e300", "-o", "o.mha"],
+                        ["voxels", "m.vtu", "--spacing", "0.002", "-o", "o.mha"],
+                        ["phantom", "--spacing", "1e300", "-o", "o.mha"],
+                        ["contours", "ct.mha", "--labels", "l.nii.gz", "--slice-step", "1e-300", "-o", "o.vtp"],
+                        ["build", "ct.mha", "--labels", "l.nii.gz", "--slice-step", "1e-300", "-o", "o"]):
+            self.refuse_usage(*command, says=command[-4])
+
+    def test_pipes_and_devices_are_refused_at_once(self):
+        os.mkfifo("pipe")
+        for name in ("pipe", "/dev/zero", "/dev/null"):
+            self.refuse("info", name, says="no regular file")
+            self.refuse("build", "ct.mha", "--labels", name, "-o", "out", says="no regular file")
+            self.refuse("drr", "ct.mha", "--geometry", name, "-o", "o.mha", says="no regular file")
+
+
+class Outputs(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.succeed("phantom", "--spacing", 3, "-o", "ct.mha", "--labels", "l.nii.gz")
+        self.contours = ["contours", "ct.mha", "--labels", "l.nii.gz", "--slice-step", 6]
+
+    def test_several_outputs_appear_together_or_not_at_all(self):
+        self.refuse(*self.contours, "-o", "a.vtp", "-o", "nowhere/b.vtp", code=2, says="nowhere")
+        self.refuse("phantom", "--spacing", 3, "-o", "a.mha", "--labels", "nowhere/b.mha", code=2, says="nowhere")
+        self.refuse("phantom", "--spacing", 3, "-o", "a.mha", "--labels", "a.mha", code=2, says="a.mha")
+        os.mkdir("folder.vtp")
+        self.refuse(*self.contours, "-o", "a.vtp", "-o", "folder.vtp", code=2, says="folder.vtp")
+
+    def test_a_replaced_file_keeps_its_mode(self):
+        os.chmod("ct.mha", 0o600)
+        self.succeed("phantom", "--spacing", 4, "-o", "ct.mha")
+        self.assertEqual(os.stat("ct.mha").st_mode & 0o777, 0o600)
+
+    def test_a_hang_up_leaves_nothing(self):
+        for number in (signal.SIGHUP, signal.SIGQUIT):
+            before = sorted(os.listdir())
+            process = subprocess.Popen([BONETK, "phantom", "--spacing", "0.7", "-o", "big.mha"], stderr=subprocess.DEVNULL)
+            while process.poll() is None and sorted(os.listdir()) == before:
+                pass
+            process.send_signal(number)
+            self.assertIn(process.wait(60), (0, 1))
+            if os.path.exists("big.mha"):
+                os.remove("big.mha")
+            self.assertEqual(sorted(os.listdir()), before)
+
+    def test_text_that_is_lost_is_an_error(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([BONETK, "info", "ct.mha"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("standard output", done.stderr)
+
+    def test_levels_of_an_earlier_build_go(self):
+        build = ["build", "ct.mha", "--labels", "l.nii.gz", "--tetrahedra", 1500, "--degree", 1, "-o", "out"]
+        self.succeed(*build, "--levels", 0.5, 0.25)
+        self.assertIn("model_L3.vtu", os.listdir("out"))
+        self.succeed(*build, "--levels", 0.5)
+        self.assertNotIn("model_L3.vtu", os.listdir("out"))
+        self.assertNotIn("drr_L3.mha", os.listdir("out"))
+        self.assertIn("model_L2.vtu", os.listdir("out"))
+        os.remove("out/report.txt")
+        os.mkdir("out/report.txt")
+        before = {name: os.stat("out/" + name).st_mtime_ns for name in os.listdir("out")}
+        self.refuse(*build, code=2, says="report.txt")
+        self.assertEqual(before, {name: os.stat("out/" + name).st_mtime_ns for name in os.listdir("out")})
+
+
+if __name__ == "__main__":
+    main()
