@@ -5,6 +5,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneContourIO.h"
+#include "boneFileName.h"
 #include "boneIOError.h"
 #include "boneLabelCrop.h"
 #include "boneParameters.h"
@@ -167,15 +168,6 @@ AddAxisOption(CLI::App * command, unsigned int & axis)
     ->type_name("x|y|z");
 }
 
-bool
-EndsIn(const std::string & path, const std::string & extension)
-{
-  return path.size() > extension.size() &&
-         std::equal(extension.rbegin(), extension.rend(), path.rbegin(), [](unsigned char a, unsigned char b) {
-           return std::tolower(a) == std::tolower(b);
-         });
-}
-
 const std::vector<std::string> &
 ImageExtensions()
 {
@@ -199,7 +191,7 @@ VerifyOutputs(const std::vector<OutputFile> & files)
     bool        known = file.extensions.empty();
     for (const std::string & extension : file.extensions)
     {
-      known = known || EndsIn(file.path, extension);
+      known = known || HasExtension(file.path, extension);
       list += (list.empty() ? "" : ", ") + extension;
     }
     if (!known)

@@ -68,10 +68,6 @@ ReadBone(const BoneOptions & options, int label, unsigned int axis);
 void
 AddAxisOption(CLI::App * command, unsigned int & axis);
 
-/** Whether the name ends in the extension, in any case of its letters. */
-bool
-EndsIn(const std::string & path, const std::string & extension);
-
 /** Extensions of volumes and radiographs that can be written. */
 const std::vector<std::string> &
 ImageExtensions();

@@ -7,7 +7,7 @@ import subprocess
 
 import numpy
 
-from bonetk_testing import BONETK, TestCase, main, write_image
+from bonetk_testing import BONETK, TestCase, main, write_image, write_json
 
 
 class Damaged(TestCase):
@@ -36,7 +36,7 @@ class Damaged(TestCase):
                 self.refuse("info", name, says="wild.nii")
         for number in (1e6, 1e-4):
             write_image("unit.nii", numpy.ones((8, 8, 8), numpy.int16), (number,) * 3)
-            self.refuse("build", "unit.nii", "--labels", "unit.nii", "-o", "out", says="unit.nii")
+            self.refuse("build", "unit.nii", "--labels", "unit.nii", "-o", "out", says="units mm")
 
     def test_wild_numbers_in_a_metaimage_header(self):
         header = {"ObjectType": "Image", "NDims": "3", "BinaryData": "True", "TransformMatrix": "1 0 0 0 1 0 0 0 1",
@@ -60,13 +60,14 @@ class Damaged(TestCase):
 
     def test_files_nested_deep(self):
         with open("deep.json", "w") as file:
-            file.write("[" * 1000000)
-        self.refuse("drr", "ct.mha", "--geometry", "deep.json", "-o", "o.mha", says="deep.json")
-        for name, command in (("deep.vtu", ["info"]), ("deep.vtp", ["mesh", "-o", "o.vtu"]),
-                              ("deep.xml", ["drr", "ct.mha", "-o", "o.mha", "--geometry"])):
+            file.write("[" * 2000000)
+        self.refuse("drr", "ct.mha", "--geometry", "deep.json", "-o", "o.mha", says="nested")
+        write_json({"rtk": "deep.xml", "size": [4, 4], "spacing": [1.0, 1.0]}, "rtk.json")
+        for name, command in (("deep.vtu", ["info", "deep.vtu"]), ("deep.vtp", ["mesh", "-o", "o.vtu", "deep.vtp"]),
+                              ("deep.xml", ["drr", "ct.mha", "-o", "o.mha", "--geometry", "rtk.json"])):
             with open(name, "w") as file:
-                file.write("<VTKFile>" + "<a>" * 1000000)
-            self.refuse(*command, name, says=name)
+                file.write("<VTKFile>" + "<a>" * 3000000)
+            self.refuse(*command, says="nested")
 
     def test_meshes_of_no_size(self):
         self.mesh()

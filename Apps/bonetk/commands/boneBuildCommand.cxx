@@ -4,7 +4,6 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
-#include "boneStagingFolder.h"
 
 #include "boneAtomicFile.h"
 #include "boneBuildEvaluation.h"
@@ -13,6 +12,7 @@
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneStageClock.h"
+#include "boneStagingFolder.h"
 
 #include <chrono>
 #include <exception>
@@ -89,7 +89,7 @@ VerifyFolder(const std::string & folder)
   std::error_code error;
   for (const auto & entry : std::filesystem::directory_iterator(folder, error))
   {
-    static const std::regex output(".*\\.(vtu|vtp|mha|json|png|txt)");
+    static const std::regex output("(contours|model|drr|slices|cut_plane|radiographs|report)[._].*");
     if (entry.is_directory(error) && std::regex_match(entry.path().filename().string(), output))
     {
       throw UsageError(entry.path().string() +

@@ -7,6 +7,7 @@
 
 #include "boneBuildPlan.h"
 #include "boneContourIO.h"
+#include "boneFileName.h"
 #include "boneContourImage.h"
 #include "boneLabelCrop.h"
 
@@ -32,11 +33,7 @@ struct ContoursOptions
 bool
 IsContourFile(const std::string & path)
 {
-  const auto ends = [&path](const std::string & extension) {
-    return path.size() > extension.size() &&
-           path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
-  };
-  return ends(".vtp") || ends(".mrk.json");
+  return HasExtension(path, ".vtp") || HasExtension(path, ".mrk.json");
 }
 
 void

@@ -4,6 +4,7 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 
+#include "boneFileName.h"
 #include "boneDRRImageFilter.h"
 #include "boneGeometryIO.h"
 #include "boneIntensityImageFilter.h"
@@ -38,9 +39,7 @@ using Radiograph = CTImage;
 itk::SmartPointer<RadiographSource<Radiograph>>
 MakeSource(const DrrOptions & options)
 {
-  const std::string extension = ".vtu";
-  const std::size_t length = options.input.size();
-  if (length > extension.size() && options.input.compare(length - extension.size(), extension.size(), extension) == 0)
+  if (HasExtension(options.input, ".vtu"))
   {
     if (!options.mask.empty())
     {

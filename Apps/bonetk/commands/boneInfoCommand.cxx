@@ -5,6 +5,7 @@
 #include "boneDescribe.h"
 
 #include "boneContourIO.h"
+#include "boneFileName.h"
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
@@ -58,23 +59,23 @@ DescribePolyData(const std::string & path)
 std::string
 Describe(const std::string & path)
 {
-  if (EndsIn(path, ".vtu"))
+  if (HasExtension(path, ".vtu"))
   {
     return DescribeMesh(ReadMeshArrays(path));
   }
-  if (EndsIn(path, ".h5"))
+  if (HasExtension(path, ".h5"))
   {
     return DescribeModel(*ReadStatisticalModel(path));
   }
-  if (EndsIn(path, ".hierarchy.json"))
+  if (HasExtension(path, ".hierarchy.json"))
   {
     return DescribeHierarchy(*ReadHierarchy(path));
   }
-  if (EndsIn(path, ".mrk.json"))
+  if (HasExtension(path, ".mrk.json"))
   {
     return DescribeContours(*ReadContours(path));
   }
-  if (EndsIn(path, ".json"))
+  if (HasExtension(path, ".json"))
   {
     std::string text;
     for (const auto & view : ReadGeometry(path))
@@ -83,11 +84,11 @@ Describe(const std::string & path)
     }
     return text;
   }
-  if (EndsIn(path, ".vtp"))
+  if (HasExtension(path, ".vtp"))
   {
     return DescribePolyData(path);
   }
-  if (EndsIn(path, ".ply") || EndsIn(path, ".stl"))
+  if (HasExtension(path, ".ply") || HasExtension(path, ".stl"))
   {
     return DescribeSurface(ReadTriangleSurface(path));
   }

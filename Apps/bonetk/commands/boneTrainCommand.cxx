@@ -6,10 +6,11 @@
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 #include "bonePopulation.h"
-#include "boneStagingFolder.h"
 
+#include "boneFileName.h"
 #include "boneIOError.h"
 #include "boneModelIO.h"
+#include "boneStagingFolder.h"
 #include "boneStatisticalModelEstimator.h"
 
 #include <iomanip>
@@ -61,7 +62,7 @@ RunTrain(const TrainOptions & options, Session & session)
   VerifyOutputs({ { options.output, { ".h5" } } });
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
   const std::string               standard = options.standard.empty() ? subjects.front().shape : options.standard;
-  if (standard.size() < 4 || standard.compare(standard.size() - 4, 4, ".vtu") != 0)
+  if (!HasExtension(standard, ".vtu"))
   {
     throw UsageError("the standard model " + standard +
                      " must be a mesh (.vtu): put one first in the list, or give --standard");

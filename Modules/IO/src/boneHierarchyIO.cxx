@@ -87,6 +87,7 @@ ToLevel(const json & object, const fs::path & folder, const Level * before)
                                    before == nullptr);
   return level;
 }
+
 /** The levels of the hierarchy under this name that are not among `paths`, which replace it. */
 std::vector<std::string>
 FormerLevels(const std::string & jsonPath, const std::vector<std::string> & paths)

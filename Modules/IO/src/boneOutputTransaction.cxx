@@ -60,15 +60,22 @@ MoveAll(const std::vector<OutputTransaction::Move> & moves, const std::vector<st
     struct stat                     there
     {
     };
-    if (::lstat(move.to.c_str(), &there) == 0 && S_ISREG(there.st_mode))
+    if (::lstat(move.to.c_str(), &there) == 0 && !S_ISDIR(there.st_mode))
     {
-      // A file keeps its mode: nobody may read what only its owner could.
-      ::chmod(move.from.c_str(), there.st_mode & 07777);
-      ::link(move.to.c_str(), move.former.c_str());
+      if (S_ISREG(there.st_mode))
+      {
+        // A file keeps its mode: nobody may read what only its owner could.
+        ::chmod(move.from.c_str(), there.st_mode & 07777);
+      }
+      if (::link(move.to.c_str(), move.former.c_str()) != 0)
+      {
+        ::rename(move.to.c_str(), move.former.c_str()); // a file system without hard links
+      }
     }
     if (::rename(move.from.c_str(), move.to.c_str()) != 0)
     {
       const int code = errno;
+      ::rename(move.former.c_str(), move.to.c_str());
       Undo(moves, i);
       throw IOError(move.path, std::string("cannot write: ") + std::strerror(code));
     }

@@ -6,6 +6,9 @@
 
 #include "boneTestFiles.h"
 
+#include <itkImageFileReader.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -146,10 +149,34 @@ TEST_F(ImageIOTest, AnObliqueVolumeIsReadAsWrittenInEveryFormat)
 TEST_F(ImageIOTest, PicturesAreWritten)
 {
   auto grey = MakeImage<itk::Image<unsigned char, 2>>({ { 4, 3 } });
+  auto colours = MakeImage<PictureImage>({ { 4, 3 } });
+  for (unsigned char i = 0; i < 12; ++i)
+  {
+    grey->GetBufferPointer()[i] = 20 * i;
+    const unsigned char rgb[3] = { i, static_cast<unsigned char>(100 + i), static_cast<unsigned char>(255 - 9 * i) };
+    colours->GetBufferPointer()[i] = PictureImage::PixelType(rgb);
+  }
   WriteImage(grey, Path("g.png"));
-  WriteImage(MakeImage<PictureImage>({ { 4, 3 } }), Path("p.png"));
+  WriteImage(colours, Path("p.png"));
+  const auto greyRead = itk::ReadImage<itk::Image<unsigned char, 2>>(Path("g.png"));
+  const auto coloursRead = itk::ReadImage<PictureImage>(Path("p.png"));
+  ASSERT_EQ(coloursRead->GetBufferedRegion().GetSize(), colours->GetBufferedRegion().GetSize());
+  EXPECT_TRUE(std::equal(grey->GetBufferPointer(), grey->GetBufferPointer() + 12, greyRead->GetBufferPointer()));
+  EXPECT_TRUE(
+    std::equal(colours->GetBufferPointer(), colours->GetBufferPointer() + 12, coloursRead->GetBufferPointer()));
   WriteImage(MakeImage<itk::Image<float, 2>>({ { 4, 3 } }), Path("f.mha"));
   EXPECT_THAT(Files(), ElementsAre("f.mha", "g.png", "p.png"));
+}
+
+TEST_F(ImageIOTest, APictureOnAFullDiskIsAnError)
+{
+  const auto picture = MakeImage<PictureImage>({ { 400, 300 } });
+  EXPECT_THAT(ErrorOf([&] {
+                const FullDisk full(20);
+                WriteImage(picture, Path("p.png"));
+              }),
+              HasSubstr("p.png: cannot write"));
+  EXPECT_THAT(Files(), testing::IsEmpty());
 }
 
 TEST_F(ImageIOTest, ARadiographIsReadAsWritten)

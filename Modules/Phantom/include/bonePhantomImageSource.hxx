@@ -5,9 +5,8 @@
 #define bonePhantomImageSource_hxx
 
 #include "bonePhantomImageSource.h"
-#include "boneVoxelGrid.h"
-
 #include "boneLabelValue.h"
+#include "boneVoxelGrid.h"
 
 #include <itkImageScanlineIterator.h>
 

@@ -5,9 +5,9 @@
 
 #include "boneAtomicFile.h"
 #include "boneContourImage.h"
+#include "boneDicomFile.h"
 #include "boneMarkups.h"
 #include "bonePolylines.h"
-#include "boneDicomFile.h"
 #include "boneStructureSet.h"
 #include "boneVtkArrays.h"
 #include "boneVtkFile.h"

@@ -51,21 +51,6 @@ struct NiftiHeader
   std::size_t offset{ 0 };
 };
 
-template <typename T>
-T
-Decode(const char * bytes, bool swapped)
-{
-  std::array<char, sizeof(T)> ordered;
-  std::copy_n(bytes, sizeof(T), ordered.begin());
-  if (swapped)
-  {
-    std::reverse(ordered.begin(), ordered.end());
-  }
-  T value;
-  std::memcpy(&value, ordered.data(), sizeof(T));
-  return value;
-}
-
 NiftiHeader
 ReadNiftiHeader(const std::string & path)
 {

@@ -8,7 +8,6 @@
 
 #include <itk_zlib.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -77,20 +76,6 @@ RequireNumbers(const std::string &                        path,
   }
 }
 
-template <typename T>
-T
-At(const std::array<char, 348> & header, std::size_t offset, bool swapped)
-{
-  std::array<char, sizeof(T)> bytes;
-  for (std::size_t i = 0; i < sizeof(T); ++i)
-  {
-    bytes[i] = header[offset + (swapped ? sizeof(T) - 1 - i : i)];
-  }
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof(T));
-  return value;
-}
-
 /** Offsets as in nifti1.h. */
 void
 RequireSensibleNifti(const std::string & path)
@@ -99,16 +84,16 @@ RequireSensibleNifti(const std::string & path)
   std::array<char, 348> header{};
   const int             read = file != nullptr ? gzread(file, header.data(), header.size()) : 0;
   gzclose(file);
-  const auto dimensions = At<std::int16_t>(header, 40, false);
+  const auto dimensions = Decode<std::int16_t>(&header[40], false);
   const bool swapped = dimensions < 1 || dimensions > 7;
-  if (read != static_cast<int>(header.size()) || At<std::int32_t>(header, 0, swapped) != 348)
+  if (read != static_cast<int>(header.size()) || Decode<std::int32_t>(&header[0], swapped) != 348)
   {
     return;
   }
   const auto require = [&](const char * name, std::size_t first, int count) {
     for (int i = 0; i < count; ++i)
     {
-      const float value = At<float>(header, first + 4 * static_cast<std::size_t>(i), swapped);
+      const float value = Decode<float>(&header[first + 4 * static_cast<std::size_t>(i)], swapped);
       if (!(std::abs(value) <= LargestNumber))
       {
         throw IOError(path, Say("is no readable image: its header's ", name, " holds ", value));
@@ -117,11 +102,11 @@ RequireSensibleNifti(const std::string & path)
   };
   require("voxel sizes (pixdim)", 80, 3);
   require("scale (scl_slope, scl_inter)", 112, 2);
-  if (At<std::int16_t>(header, 252, swapped) > 0)
+  if (Decode<std::int16_t>(&header[252], swapped) > 0)
   {
     require("position (qform)", 256, 6);
   }
-  if (At<std::int16_t>(header, 254, swapped) > 0)
+  if (Decode<std::int16_t>(&header[254], swapped) > 0)
   {
     require("position (sform)", 280, 12);
   }

@@ -4,12 +4,31 @@
 #ifndef boneImageHeader_h
 #define boneImageHeader_h
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <istream>
 #include <map>
 #include <string>
 
 namespace bone
 {
+/** The number that these bytes of a file are. */
+template <typename T>
+T
+Decode(const char * bytes, bool swapped)
+{
+  std::array<char, sizeof(T)> ordered;
+  std::copy_n(bytes, sizeof(T), ordered.begin());
+  if (swapped)
+  {
+    std::reverse(ordered.begin(), ordered.end());
+  }
+  T value;
+  std::memcpy(&value, ordered.data(), sizeof(T));
+  return value;
+}
+
 /** The text without blanks at both ends. */
 std::string
 Trim(const std::string & text);

@@ -4,6 +4,8 @@
 #ifndef boneVtkFile_h
 #define boneVtkFile_h
 
+#include "boneFileName.h"
+
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
@@ -23,10 +25,6 @@ RequireReadableFile(const std::string & path);
 /** Throws IOError unless the path ends (in any case) in one of the extensions, given with their dots. */
 void
 RequireExtension(const std::string & path, const std::vector<std::string> & extensions);
-
-/** True where the path ends in the extension, in any case. */
-bool
-HasExtension(const std::string & path, const std::string & extension);
 
 /** Read a file with VTK's reader; VTK's own messages become one IOError. */
 vtkSmartPointer<vtkUnstructuredGrid>
