@@ -77,8 +77,11 @@ DrawModes(const bone::StatisticalModel & model,
 {
   const auto shapes = bone::DrawShapeModes(model, 2, look, up);
   bone::WriteImage(shapes.GetPointer(), folder + "/shape_modes.png");
-  const auto radiographs = bone::DrawRadiographModes(model, look, up);
-  bone::WriteImage(radiographs.GetPointer(), folder + "/radiograph_modes.png");
+  if (model.HasDensity())
+  {
+    const auto radiographs = bone::DrawRadiographModes(model, look, up);
+    bone::WriteImage(radiographs.GetPointer(), folder + "/radiograph_modes.png");
+  }
 }
 
 void
@@ -101,7 +104,6 @@ Train(bone::PopulationRegistration &                population,
   }
   auto estimator = bone::StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
-  estimator->VolumeWeightedOn(); // modes of the density as a function
   estimator->Update();
   const auto * model = estimator->GetOutput();
   bone::WriteStatisticalModel(model, folder + "/atlas.h5");

@@ -3,12 +3,14 @@
  *=========================================================================*/
 #include "boneDescribe.h"
 
+#include "boneLabelChoice.h"
 #include "boneLabelValue.h"
 #include "boneQualityMeasures.h"
 
 #include <itkImageRegionConstIterator.h>
 #include <itkMath.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -56,9 +58,37 @@ Angles(const QualitySummary & summary)
   return os.str();
 }
 
-/** A row for each label, where the image's values are few and whole. */
 void
-DescribeLabels(const CTImage & image, std::ostream & os)
+DescribeGrid(const itk::ImageBase<3> & image, std::ostream & os)
+{
+  const auto size = image.GetLargestPossibleRegion().GetSize();
+  const auto spacing = image.GetSpacing();
+  const auto origin = image.GetOrigin();
+  os << std::left << std::setw(28) << "voxels" << size[0] << " x " << size[1] << " x " << size[2] << '\n';
+  Row(os, "spacing (mm)", Numbers({ spacing[0], spacing[1], spacing[2] }));
+  Row(os, "origin (mm, LPS)", Numbers({ origin[0], origin[1], origin[2] }));
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const auto & d = image.GetDirection();
+    Row(os, "axis " + std::to_string(axis) + " (LPS)", Numbers({ d(0, axis), d(1, axis), d(2, axis) }));
+  }
+}
+
+void
+DescribeLabels(const std::vector<LabelCount> & labels, std::ostream & os)
+{
+  for (const LabelCount & label : labels)
+  {
+    std::ostringstream text;
+    text << label.voxels << " voxels, " << std::fixed << std::setprecision(1) << 1e-3 * label.volume << " cm^3"
+         << (label.name.empty() ? "" : ", " + label.name);
+    Row(os, "label " + std::to_string(label.value), text.str());
+  }
+}
+
+/** The labels of an image, where its values are few and whole; else none. */
+std::vector<LabelCount>
+FindLabels(const CTImage & image, const std::vector<LabelName> & names)
 {
   constexpr std::size_t        most = 256;
   std::map<float, std::size_t> counts;
@@ -67,23 +97,23 @@ DescribeLabels(const CTImage & image, std::ostream & os)
     ++counts[it.Get()];
     if (counts.size() > most || it.Get() != std::floor(it.Get()))
     {
-      return;
+      return {};
     }
   }
-  const auto   spacing = image.GetSpacing();
-  const double voxel = 1e-3 * spacing[0] * spacing[1] * spacing[2];
+  const auto spacing = image.GetSpacing();
   counts.erase(0.0F);
+  std::vector<LabelCount> labels;
   for (const auto & [value, voxels] : counts)
   {
-    std::ostringstream text;
-    text << voxels << " voxels, " << std::fixed << std::setprecision(1) << voxel * static_cast<double>(voxels)
-         << " cm^3";
-    Row(os, "label " + std::to_string(static_cast<int>(value)), text.str());
+    const auto label = static_cast<int>(value);
+    const auto named =
+      std::find_if(names.begin(), names.end(), [label](const LabelName & name) { return name.value == label; });
+    labels.push_back({ label,
+                       voxels,
+                       spacing[0] * spacing[1] * spacing[2] * static_cast<double>(voxels),
+                       named == names.end() ? "" : named->name });
   }
-  if (StatesOneBone(image))
-  {
-    Row(os, "labels are", "regions of one bone");
-  }
+  return labels;
 }
 } // namespace
 
@@ -206,21 +236,11 @@ DescribeView(const XRayGeometry & geometry)
 }
 
 std::string
-DescribeImage(const CTImage & image)
+DescribeImage(const CTImage & image, const std::vector<LabelName> & names)
 {
-  const auto         size = image.GetLargestPossibleRegion().GetSize();
-  const auto         spacing = image.GetSpacing();
-  const auto         origin = image.GetOrigin();
   std::ostringstream os;
   Row(os, "kind", "image");
-  os << std::left << std::setw(28) << "voxels" << size[0] << " x " << size[1] << " x " << size[2] << '\n';
-  Row(os, "spacing (mm)", Numbers({ spacing[0], spacing[1], spacing[2] }));
-  Row(os, "origin (mm, LPS)", Numbers({ origin[0], origin[1], origin[2] }));
-  for (unsigned int axis = 0; axis < 3; ++axis)
-  {
-    const auto & d = image.GetDirection();
-    Row(os, "axis " + std::to_string(axis) + " (LPS)", Numbers({ d(0, axis), d(1, axis), d(2, axis) }));
-  }
+  DescribeGrid(image, os);
   float  least = std::numeric_limits<float>::max();
   float  largest = std::numeric_limits<float>::lowest();
   double sum = 0.0;
@@ -232,9 +252,25 @@ DescribeImage(const CTImage & image)
   }
   os << std::left << std::setw(28) << "values" << least << " to " << largest << ", mean "
      << sum / static_cast<double>(image.GetLargestPossibleRegion().GetNumberOfPixels()) << '\n';
-  DescribeLabels(image, os);
+  DescribeLabels(FindLabels(image, names), os);
+  if (StatesOneBone(image))
+  {
+    Row(os, "labels are", "regions of one bone");
+  }
   return os.str();
 }
+
+std::string
+DescribeLabelFile(const LabelFile & file)
+{
+  std::ostringstream os;
+  Row(
+    os, "kind", "segments in " + std::to_string(file.layers.size()) + (file.layers.size() == 1 ? " layer" : " layers"));
+  DescribeGrid(*file.layers.front(), os);
+  DescribeLabels(CountLabels(file), os);
+  return os.str();
+}
+
 std::string
 DescribeModel(const StatisticalModel & model)
 {

@@ -6,7 +6,7 @@
 
 #include "boneContourStack.h"
 #include "boneDensityHierarchy.h"
-#include "boneImageIO.h"
+#include "boneLabelIO.h"
 #include "boneStatisticalModel.h"
 #include "boneXRayGeometry.h"
 
@@ -28,8 +28,12 @@ std::string
 DescribeView(const XRayGeometry & geometry);
 std::string
 DescribeModel(const StatisticalModel & model);
+/** Where its values are few and whole, with a row for each label. */
 std::string
-DescribeImage(const CTImage & image);
+DescribeImage(const CTImage & image, const std::vector<LabelName> & names);
+/** Grid and labels of a file whose labels may overlap. */
+std::string
+DescribeLabelFile(const LabelFile & file);
 /** \} */
 } // namespace bone
 

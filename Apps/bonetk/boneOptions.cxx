@@ -4,10 +4,8 @@
 #include "boneOptions.h"
 
 #include "boneAtomicFile.h"
-#include "boneContourIO.h"
 #include "boneFileName.h"
 #include "boneIOError.h"
-#include "boneLabelCrop.h"
 #include "boneParameters.h"
 
 #include <algorithm>
@@ -105,57 +103,6 @@ CLI::Validator
 Length()
 {
   return Between(ParameterRange::Length().lower, ParameterRange::Length().upper);
-}
-
-void
-BoneOptions::AddTo(CLI::App * command)
-{
-  command->add_option("--labels", labels, "Label map on the CT's grid: where the bone is");
-  auto * initOption = command->add_option("--init",
-                                          init,
-                                          "Initial contours: .vtp, .mrk.json of 3D Slicer, DICOM structure set (.dcm), "
-                                          "or a label map of some slices; may be given with --labels");
-  command->add_option("--structure", structure, "The bone's name in a DICOM structure set; default: the only structure")
-    ->needs(initOption);
-}
-
-void
-BoneOptions::Verify() const
-{
-  if (labels.empty() && init.empty())
-  {
-    throw UsageError("--labels or --init is required: they say where the bone is");
-  }
-}
-
-LabelImage::Pointer
-ReadBoneLabels(const std::string & path, int label)
-{
-  const LabelImage::Pointer labels = ReadLabels(path);
-  try
-  {
-    VerifyOneBone(labels, label);
-  }
-  catch (const itk::ExceptionObject & error)
-  {
-    throw UsageError(path + ": " + ErrorLine(error) + " Choose one with --label");
-  }
-  return labels;
-}
-
-BoneInput
-ReadBone(const BoneOptions & options, int label, unsigned int axis)
-{
-  BoneInput input;
-  if (!options.labels.empty())
-  {
-    input.labels = ReadBoneLabels(options.labels, label);
-  }
-  if (!options.init.empty())
-  {
-    input.contours = ReadContours(options.init, { options.structure, label, axis });
-  }
-  return input;
 }
 
 void

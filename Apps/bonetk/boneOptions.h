@@ -4,8 +4,6 @@
 #ifndef boneOptions_h
 #define boneOptions_h
 
-#include "boneContourStack.h"
-#include "boneImageIO.h"
 #include "boneSession.h"
 
 #include <CLI/CLI.hpp>
@@ -32,37 +30,6 @@ Between(double lower, double upper);
  * called when all options are there. */
 void
 ReadDecimalNumbers(CLI::App & app);
-
-/** Where the bone is: a label map, initial contours, or both. */
-struct BoneOptions
-{
-  std::string labels;
-  std::string init;
-  std::string structure;
-
-  /** Adds --labels, --init and --structure. */
-  void
-  AddTo(CLI::App * command);
-  /** Throws UsageError where neither labels nor contours were given. */
-  void
-  Verify() const;
-};
-
-/** A label map with one bone in it. Throws UsageError that lists its labels where it has several and `label` is 0,
- * unless it states that they are regions of one bone. */
-LabelImage::Pointer
-ReadBoneLabels(const std::string & path, int label);
-
-/** What BoneOptions name, read; null where not given. */
-struct BoneInput
-{
-  LabelImage::Pointer   labels;
-  ContourStack::Pointer contours;
-};
-
-/** `label` is the bone's value in label maps, `axis` that of AddAxisOption. */
-BoneInput
-ReadBone(const BoneOptions & options, int label, unsigned int axis);
 
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void

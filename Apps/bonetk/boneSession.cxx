@@ -12,9 +12,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 #include <regex>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace bone
@@ -56,12 +56,34 @@ public:
 private:
   Session * m_Session{ nullptr };
 };
+
+/** Writes all of the text. Returns 0, or errno where it cannot be written. */
+int
+WriteAll(int file, const std::string & text)
+{
+  for (std::size_t done = 0; done < text.size();)
+  {
+    const ssize_t count = write(file, text.data() + done, text.size() - done);
+    if (count < 0 && errno != EINTR)
+    {
+      return errno;
+    }
+    done += count < 0 ? 0 : static_cast<std::size_t>(count);
+  }
+  return 0;
+}
 } // namespace
 
 Session::Session()
   : m_Start(std::chrono::steady_clock::now())
+  , m_Output(dup(STDOUT_FILENO))
+  , m_Error(dup(STDERR_FILENO))
   , m_Terminal(isatty(STDERR_FILENO) == 1)
 {
+  const int nowhere = open("/dev/null", O_WRONLY);
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  close(nowhere);
   auto window = SessionWindow::New();
   window->SetSession(this);
   itk::OutputWindow::SetInstance(window);
@@ -71,20 +93,35 @@ Session::~Session()
 {
   this->ClearProgress();
   itk::OutputWindow::SetInstance(nullptr);
+  dup2(m_Output, STDOUT_FILENO);
+  dup2(m_Error, STDERR_FILENO);
+  close(m_Output);
+  close(m_Error);
 }
 
 void
 Session::Print(const std::string & text)
 {
-  if (!quiet && m_PrintError == 0)
+  if (!quiet)
+  {
+    this->PrintAlways(text);
+  }
+}
+
+void
+Session::PrintAlways(const std::string & text)
+{
+  if (m_PrintError == 0)
   {
     this->ClearProgress();
-    errno = 0;
-    if (!(std::cout << text << std::flush))
-    {
-      m_PrintError = errno == 0 ? EIO : errno;
-    }
+    m_PrintError = WriteAll(m_Output, text);
   }
+}
+
+void
+Session::WriteError(const std::string & text)
+{
+  WriteAll(m_Error, text); // there is nobody to tell that it fails
 }
 
 void
@@ -94,6 +131,19 @@ Session::Finish() const
   {
     throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(m_PrintError));
   }
+}
+
+std::string
+Session::Heading() const
+{
+  return "bonetk" + (command.empty() ? "" : " " + command) + ": " + (subject.empty() ? "" : subject + ": ");
+}
+
+void
+Session::ForgetWarnings(std::size_t count)
+{
+  const std::lock_guard<std::mutex> lock(m_Mutex);
+  m_Warnings.resize(std::min(count, m_Warnings.size()));
 }
 
 void
@@ -120,7 +170,7 @@ Session::Warn(const std::string & message, bool shown)
   if (shown)
   {
     this->ClearProgress();
-    std::cerr << "bonetk " << command << ": warning: " << message << std::endl;
+    this->WriteError(this->Heading() + "warning: " + message + '\n');
   }
 }
 
@@ -130,7 +180,7 @@ Session::Fail(const std::string & message)
   this->ClearProgress();
   std::string line = message;
   std::replace(line.begin(), line.end(), '\n', ' ');
-  std::cerr << "bonetk" << (command.empty() ? "" : " " + command) << ": " << line << std::endl;
+  this->WriteError(this->Heading() + line + '\n');
 }
 
 void
@@ -158,7 +208,7 @@ Session::ShowProgress(const std::string & name, double share)
   if (line != m_Shown)
   {
     m_Shown = line;
-    std::cerr << '\r' << line << std::flush;
+    this->WriteError('\r' + m_Shown);
   }
 }
 
@@ -167,7 +217,7 @@ Session::ClearProgress()
 {
   if (!m_Shown.empty())
   {
-    std::cerr << '\r' << std::string(m_Shown.size(), ' ') << '\r' << std::flush;
+    this->WriteError('\r' + std::string(m_Shown.size(), ' ') + '\r');
     m_Shown.clear();
   }
 }

@@ -18,7 +18,8 @@ namespace bone
  *
  * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
  * errors and warnings that the result is not what was asked for. Warnings of ITK filters become lines of this session
- * too. */
+ * too. What the libraries below ITK print by themselves reaches nobody: while a session lives, only it has the process's
+ * standard streams. */
 class Session
 {
 public:
@@ -34,6 +35,7 @@ public:
   int  threads{ 0 }; ///< 0: all processors
   /** \} */
   std::string command;
+  std::string subject; ///< of several that the command works on; warnings and errors name it
 
   /** Text for standard output. */
   void
@@ -51,6 +53,10 @@ public:
   void
   Fail(const std::string & message);
 
+  /** What --help or --version asked for, quiet or not. */
+  void
+  PrintAlways(const std::string & text);
+
   /** To be called at the end. Throws std::runtime_error where text for standard output was lost, as on a full disk. One
    * that nobody reads any more is no error: they have seen what they wanted. */
   void
@@ -62,11 +68,20 @@ public:
     return m_Warnings;
   }
 
+  /** Forgets all warnings but the first `count`. */
+  void
+  ForgetWarnings(std::size_t count);
+
   /** Shows the filter's progress on a terminal while it runs, from the first second of the command on. */
   void
   Watch(itk::ProcessObject * filter, const std::string & name);
 
 private:
+  void
+  WriteError(const std::string & text);
+  /** "bonetk COMMAND: SUBJECT: " */
+  std::string
+  Heading() const;
   void
   Warn(const std::string & message, bool shown);
   void
@@ -77,6 +92,8 @@ private:
   std::vector<std::string>              m_Warnings;
   std::mutex                            m_Mutex;
   std::chrono::steady_clock::time_point m_Start;
+  int                                   m_Output; ///< where standard output went
+  int                                   m_Error;
   bool                                  m_Terminal;
   std::string                           m_Shown;
   int                                   m_PrintError{ 0 }; ///< of errno

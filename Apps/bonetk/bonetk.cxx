@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 namespace
 {
@@ -85,7 +86,9 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
     {
-      app.exit(error); // prints what --help or --version asked for
+      std::ostringstream text;
+      app.exit(error, text, text); // writes what --help or --version asked for
+      session.PrintAlways(text.str());
       exitCode = Success;
       return false;
     }
@@ -124,6 +127,10 @@ Run(const bone::Action & action, bone::Session & session)
     session.Fail(std::string(error.what()) + "; see bonetk " + session.command + " --help");
     return BadUsage;
   }
+  catch (const itk::MemoryAllocationError &)
+  {
+    session.Fail("not enough memory for this input");
+  }
   catch (const itk::ExceptionObject & error)
   {
     session.Fail(bone::ErrorLine(error));
@@ -135,6 +142,10 @@ Run(const bone::Action & action, bone::Session & session)
   catch (const std::exception & error)
   {
     session.Fail(error.what());
+  }
+  catch (...)
+  {
+    session.Fail("failed in an unknown way; please report it with its input");
   }
   return BadData;
 }

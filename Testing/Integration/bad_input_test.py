@@ -105,7 +105,7 @@ class BadInput(TestCase):
 
     def test_labels_on_another_grid(self):
         write_image("small.nii.gz", ball(24, 8.0))
-        self.refuse("build", "ct.nii.gz", "--labels", "small.nii.gz", "-o", "out", says="grid")
+        self.refuse("build", "ct.nii.gz", "--labels", "small.nii.gz", "-o", "out", says="does not cover the CT")
 
     def test_contour_that_crosses_itself(self):
         with open("crossing.vtp", "w") as file:

@@ -88,13 +88,70 @@ TEST(BoneImage, CroppedImageStaysInPlace)
   EXPECT_EQ(cropped->GetPixel(first), 3);
 }
 
-TEST(BoneImage, AnotherGridIsRefused)
+bone::CTImage::Pointer
+MakeCTOfBox()
 {
   auto ct = bone::CTImage::New();
   ct->SetRegions(MakeBox()->GetLargestPossibleRegion());
-  EXPECT_THROW(bone::VerifySameGrid(ct, MakeBox()), itk::ExceptionObject);
   ct->CopyInformation(MakeBox());
-  EXPECT_NO_THROW(bone::VerifySameGrid(ct, MakeBox()));
+  ct->Allocate(true);
+  return ct;
+}
+
+TEST(LabelCrop, AGridIsTheSameWithinAHundredthOfTheSmallestEdge)
+{
+  const auto ct = MakeCTOfBox();
+  const auto labels = MakeBox();
+  auto       origin = labels->GetOrigin();
+  for (const double shift : { 0.0, 0.004, -0.0049 })
+  {
+    origin[2] = shift;
+    labels->SetOrigin(origin);
+    ASSERT_TRUE(bone::IsSameGrid(ct, labels));
+    const auto put = bone::PutOnGrid(labels, ct);
+    EXPECT_EQ(put->GetOrigin(), ct->GetOrigin());
+    EXPECT_EQ(put->GetPixel({ { 4, 5, 6 } }), 3);
+    EXPECT_EQ(labels->GetOrigin()[2], shift); // is left as it was
+  }
+  origin[2] = 0.0051;
+  labels->SetOrigin(origin);
+  EXPECT_FALSE(bone::IsSameGrid(ct, labels));
+  EXPECT_THROW(bone::PutOnGrid(labels, ct), itk::ExceptionObject);
+  const auto spaced = MakeBox();
+  auto       spacing = spaced->GetSpacing();
+  spacing[2] = 2.001; // 0.017 mm at the last of 18 slices
+  spaced->SetSpacing(spacing);
+  EXPECT_FALSE(bone::IsSameGrid(ct, spaced));
+  auto small = bone::CTImage::New();
+  small->SetRegions(bone::CTImage::SizeType{ { 16, 14, 17 } });
+  small->CopyInformation(labels);
+  EXPECT_FALSE(bone::IsSameGrid(small, MakeBox()));
+  EXPECT_THROW(bone::PutOnGrid(MakeBox(), small), itk::ExceptionObject);
+}
+
+TEST(LabelCrop, ResamplingTakesTheNearestLabelAndKeepsTheStatement)
+{
+  const auto labels = MakeBox();
+  bone::StateOneBone(*labels);
+  // Each of its voxels is a third of one of the labels' along x; the first lies a third before the labels' first.
+  auto ct = bone::CTImage::New();
+  ct->CopyInformation(labels);
+  auto spacing = labels->GetSpacing();
+  spacing[0] /= 3.0;
+  auto origin = labels->GetOrigin();
+  origin[0] -= spacing[0];
+  ct->SetSpacing(spacing);
+  ct->SetOrigin(origin);
+  ct->SetRegions(bone::CTImage::SizeType{ { 48, 14, 18 } });
+  const auto fine = bone::ResampleToGrid(labels, ct);
+  EXPECT_TRUE(bone::StatesOneBone(*fine));
+  for (long x = 0; x < 48; ++x)
+  {
+    ASSERT_EQ(fine->GetPixel({ { x, 6, 7 } }), labels->GetPixel({ { x / 3, 6, 7 } })) << x;
+  }
+  origin[0] -= 0.55 * spacing[0]; // beyond the labels' edge
+  ct->SetOrigin(origin);
+  EXPECT_THROW(bone::ResampleToGrid(labels, ct), itk::ExceptionObject);
 }
 
 TEST(LabelCrop, BonesAreNotJoinedWithoutBeingToldTo)

@@ -128,9 +128,9 @@ def population_section(scratch):
                 "scanned (1 mm, with the scanner's blur), goes through the whole chain to a layered mesh of its own slices and",
                 "cells, to which the standard model (another phantom's, of other cells) is registered by layers; density from the",
                 "scan. Share of each factor's variance that the first three modes of shape, or two of density, explain, with",
-                "the inner product of densities by coefficients (the default, as in the paper), by the integral over the volume",
-                "(`--volume-weighted --within-cell-weight 1`), or by volume with variation within cells counting a quarter",
-                "(`--volume-weighted`):\n",
+                "the inner product of densities by coefficients (`--coefficient-product`, as in the paper), by the integral over the volume",
+                "(`--within-cell-weight 1`), or by volume with variation within cells counting a quarter",
+                "(the default):\n",
                 "| factor | " + " | ".join(trained) + " |", "|---" * (1 + len(trained)) + "|"]
         out += ["| " + " | ".join([name] + [explained[name, k] for k in trained]) + " |" for name in names]
         out.append("| largest correlation of these shape and density scores | "

@@ -272,7 +272,7 @@ PrintFactors(double within, int degree, const MeshTrainingSet<> * set, const Eig
   auto estimator = StatisticalModelEstimator<>::New();
   estimator->SetInput(set);
   estimator->SetVarianceProportion(1.0); // all modes: the third of shape is beyond 98 % of the variance
-  estimator->SetVolumeWeighted(within > 0);
+  estimator->SetCoefficientProduct(!(within > 0));
   if (within > 0)
   {
     estimator->SetWithinCellWeight(within);

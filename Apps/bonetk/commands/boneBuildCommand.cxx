@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -11,13 +12,19 @@
 #include "boneContourIO.h"
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
+#include "boneIOError.h"
+#include "boneOutputTransaction.h"
 #include "boneStageClock.h"
 #include "boneStagingFolder.h"
 
 #include <chrono>
+#include <cctype>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <iomanip>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace bone
@@ -27,6 +34,7 @@ namespace
 struct BuildOptions
 {
   std::string        ct;
+  std::string        series;
   BoneOptions        bone;
   std::string        output;
   BuildParameters    parameters;
@@ -34,28 +42,32 @@ struct BuildOptions
   std::exception_ptr failure; ///< of reading it
 };
 
-/** What the command line names; without a CT what the report names that the parameters come from. */
-BuildFiles
-FilesOf(const BuildOptions & options)
+/** What the command line names; without a CT, what the report names that the parameters come from. */
+BuildOptions
+Complete(BuildOptions options)
 {
-  if (options.ct.empty() && options.files.image.empty())
+  if (options.failure)
+  {
+    std::rethrow_exception(options.failure);
+  }
+  const BuildFiles & former = options.files;
+  if (options.ct.empty() && former.image.empty())
   {
     throw UsageError("ct is required: an image file, or the folder of a DICOM series");
   }
+  std::vector<std::string> & wanted = options.bone.labels.wanted;
   if (options.ct.empty())
   {
-    return options.files;
+    options.ct = former.image;
+    options.series = former.series;
+    options.bone = { { former.labels, wanted, former.labelNames }, former.initialContours, former.structure };
+  }
+  if (wanted.empty() && (!former.labelName.empty() || options.parameters.plan.label != 0))
+  {
+    wanted = { former.labelName.empty() ? std::to_string(options.parameters.plan.label) : former.labelName };
   }
   options.bone.Verify();
-  return { options.ct, options.bone.labels, options.bone.init, options.bone.structure };
-}
-
-BuildInput
-ReadInput(const BuildFiles & files, const BuildPlanParameters & plan)
-{
-  const CTImage::Pointer ct = ReadCT(files.image);
-  const BoneInput bone = ReadBone({ files.labels, files.initialContours, files.structure }, plan.label, plan.axis);
-  return CropToBone(ct, bone.labels, bone.contours, plan);
+  return options;
 }
 
 void
@@ -132,23 +144,30 @@ private:
   std::chrono::steady_clock::time_point m_Before{ std::chrono::steady_clock::now() };
 };
 
-void
-RunBuild(const BuildOptions & options, Session & session)
+/** What is built of one bone, and where. */
+struct BuildJob
 {
-  if (options.failure)
-  {
-    std::rethrow_exception(options.failure);
-  }
-  const BuildPlanParameters & plan = options.parameters.plan;
+  BoneInput   input;
+  std::string folder;
+  double      secondsOfReading{ 0.0 };
+};
+
+BuildReport
+BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job, Session & session)
+{
+  const LabelledBone & bone = job.input.bone;
+  const LabelOptions & labels = options.bone.labels;
+  BuildParameters      parameters = options.parameters;
+  parameters.plan.label = bone.label;
+  const BuildPlanParameters & plan = parameters.plan;
   BuildReport                 report;
   report.version = BONETK_VERSION;
-  report.files = FilesOf(options);
-  report.parameters = options.parameters;
-  StagingFolder staging(options.output);
-  VerifyFolder(options.output);
-  Lap              lap;
-  const BuildInput input = ReadInput(report.files, plan);
-  report.times.emplace_back("reading", lap());
+  report.files = { options.ct, options.series,    labels.file,           labels.names,
+                   bone.name,  options.bone.init, options.bone.structure };
+  report.times.emplace_back("reading", job.secondsOfReading);
+  StagingFolder staging(job.folder);
+  VerifyFolder(job.folder);
+  const BuildInput input = CropToBone(ct, bone.labels, job.input.contours, plan);
 
   BuildPipeline pipeline(plan.levels.size() + 1);
   StageClock    clock(pipeline.GetStages());
@@ -156,7 +175,7 @@ RunBuild(const BuildOptions & options, Session & session)
   {
     session.Watch(filter, name);
   }
-  report.resolution = Plan(input, options.parameters, pipeline, session);
+  report.resolution = Plan(input, parameters, pipeline, session);
   try
   {
     FinishBuild(plan, nullptr, pipeline);
@@ -165,15 +184,16 @@ RunBuild(const BuildOptions & options, Session & session)
   {
     throw UsageError(std::string("--") + error.what());
   }
-  lap();
   for (const auto & entry : clock.GetSeconds())
   {
     report.times.push_back(entry);
   }
 
+  Lap              lap;
   const Evaluation evaluation = Evaluate(pipeline, { input.ct, input.mask });
   report.times.emplace_back("evaluation", lap());
-  pipeline.GetParameters(report.parameters);
+  pipeline.GetParameters(parameters);
+  report.parameters = parameters;
   const ContourStack * slices = pipeline.GetSlices()->GetOutput();
   report.slices = slices->GetSlices().size();
   report.meanSliceDistance = slices->GetMeanSliceDistance();
@@ -185,7 +205,120 @@ RunBuild(const BuildOptions & options, Session & session)
   }
   report.warnings = session.GetWarnings();
   WriteOutputs(evaluation, report, pipeline, staging);
-  session.Print("\n" + ToText(report) + "\nwritten to " + options.output + "\n");
+  session.Print("\n" + ToText(report) + "\nwritten to " + job.folder + "\n");
+  return report;
+}
+
+/** The name of a bone's folder: its own where it is fit to be one, else its label's. */
+std::string
+FolderName(const LabelledBone & bone)
+{
+  std::string name = bone.name.empty() ? "label_" + std::to_string(bone.label) : bone.name;
+  std::replace_if(
+    name.begin(),
+    name.end(),
+    [](unsigned char c) { return c < 128 && std::isalnum(c) == 0 && std::strchr("_-.", c) == nullptr; },
+    '_');
+  return name.front() == '.' ? "_" + name : name;
+}
+
+std::vector<BuildJob>
+JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds)
+{
+  std::vector<BuildJob> jobs;
+  std::set<std::string> names;
+  for (BoneInput & input : bones)
+  {
+    const std::string name = bones.size() == 1 ? "" : "/" + FolderName(input.bone);
+    if (!names.insert(name).second)
+    {
+      throw UsageError("--label: " + name.substr(1) + " is the folder of two bones; build one of them by itself");
+    }
+    jobs.push_back({ std::move(input), folder + name, seconds });
+  }
+  return jobs;
+}
+
+/** A line for each bone that was built. */
+void
+PrintTable(const std::vector<BuildReport> & reports, Session & session)
+{
+  std::ostringstream table;
+  table << std::left << std::setw(28) << "\nbone" << std::right << std::setw(12) << "tetrahedra" << std::setw(16)
+        << "volume (cm^3)" << std::setw(8) << "Dice" << std::setw(10) << "valid\n"
+        << std::fixed;
+  for (const BuildReport & report : reports)
+  {
+    const LevelReport & level = report.levels.front();
+    const std::string   label = std::to_string(report.parameters.plan.label);
+    table << std::left << std::setw(27) << (report.files.labelName.empty() ? label : report.files.labelName)
+          << std::right << std::setw(12) << level.tetrahedra << std::setw(16) << std::setprecision(1)
+          << 1e-3 * level.volume << std::setw(8) << std::setprecision(3) << level.dice.value_or(0.0) << std::setw(9)
+          << (level.valid ? "yes" : "NO") << '\n';
+  }
+  session.Print(table.str());
+}
+
+/** Several bones: each that is done is kept, whatever comes of the others. */
+void
+BuildBones(const BuildOptions & options, const CTImage * ct, const std::vector<BuildJob> & jobs, Session & session)
+{
+  std::error_code error;
+  std::filesystem::create_directory(options.output, error); // where it cannot be made the first bone says so
+  const std::size_t        common = session.GetWarnings().size();
+  std::vector<BuildReport> reports;
+  std::string              failed;
+  std::size_t              failures = 0;
+  for (const BuildJob & job : jobs)
+  {
+    session.subject = std::filesystem::path(job.folder).filename().string();
+    try
+    {
+      reports.push_back(BuildBone(options, ct, job, session));
+      OutputTransaction::CommitTaken();
+    }
+    catch (const UsageError &)
+    {
+      throw;
+    }
+    catch (const std::exception & problem)
+    {
+      const auto * ofItk = dynamic_cast<const itk::ExceptionObject *>(&problem);
+      session.Fail(ofItk == nullptr ? problem.what() : ErrorLine(*ofItk));
+      failed += (failures++ == 0 ? "" : ", ") + session.subject;
+    }
+    session.ForgetWarnings(common);
+  }
+  session.subject.clear();
+  PrintTable(reports, session);
+  if (failures > 0)
+  {
+    std::filesystem::remove(options.output, error); // where it is empty
+    throw std::runtime_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) +
+                             " bones could not be built: " + failed);
+  }
+}
+
+void
+RunBuild(const BuildOptions & given, Session & session)
+{
+  const BuildOptions options = Complete(given);
+  { // Found out before the work.
+    const StagingFolder probe(options.output);
+    VerifyFolder(options.output);
+  }
+  Lap                    lap;
+  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
+  auto                   bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
+  const auto             jobs = JobsOf(std::move(bones), options.output, lap());
+  if (jobs.size() == 1)
+  {
+    BuildBone(options, ct, jobs.front(), session);
+  }
+  else
+  {
+    BuildBones(options, ct, jobs, session);
+  }
 }
 } // namespace
 
@@ -214,8 +347,13 @@ AddBuildCommand(CLI::App & app, Action & action)
       "own build is repeated")
     ->type_name("FILE");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series");
-  options->bone.AddTo(command);
-  command->add_option("-o,--output", options->output, "Folder for models, contours, pictures and report")->required();
+  AddSeriesOption(command, options->series);
+  options->bone.AddTo(command, true);
+  command
+    ->add_option("-o,--output",
+                 options->output,
+                 "Folder for models, contours, pictures and report; with several bones that of their folders")
+    ->required();
   AddParameterOptions(command, options->parameters.plan);
   AddParameterOptions(command, options->parameters.fit, { "degree", "continuous" });
   AddAxisOption(command, options->parameters.plan.axis);

@@ -2,16 +2,15 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
 #include "boneDensityCalibrationFilter.h"
 #include "boneImageIO.h"
+#include "boneJson.h"
 #include "boneMeshIO.h"
 
-#include <nlohmann/json.hpp>
-
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
@@ -25,36 +24,31 @@ struct CalibrateOptions
   DensityCalibrationParameters parameters;
   std::string                  references;
   std::string                  ct;
+  std::string                  series;
   std::string                  labels;
   std::vector<std::string>     laws;
   std::string                  output;
 };
 
-Vector3
-Point(const nlohmann::json & json)
-{
-  const auto values = json.get<std::array<double, 3>>();
-  return { values[0], values[1], values[2] };
-}
-
 DensityReference
 ReadReference(const nlohmann::json & json)
 {
   DensityReference reference;
-  reference.name = json.at("name").get<std::string>();
-  reference.density = json.at("density").get<double>();
+  reference.name = TextMember(json, "name");
+  reference.density = NumberMember(json, "density");
   if (json.contains("value"))
   {
-    reference.measure = json.at("value").get<double>();
+    reference.measure = NumberMember(json, "value");
   }
   else if (json.contains("label"))
   {
-    reference.measure = json.at("label").get<int>();
+    reference.measure = static_cast<int>(WholeMember(json, "label", -32768, 32767));
   }
   else
   {
-    reference.measure =
-      ReferenceRegion{ Point(json.at("from")), Point(json.at("to")), json.at("radius").get<double>() };
+    reference.measure = ReferenceRegion{ Vector3(NumbersMember(json, "from", 3)),
+                                         Vector3(NumbersMember(json, "to", 3)),
+                                         NumberMember(json, "radius") };
   }
   return reference;
 }
@@ -62,30 +56,28 @@ ReadReference(const nlohmann::json & json)
 std::vector<DensityReference>
 ReadReferences(const std::string & path)
 {
+  const nlohmann::json          document = ReadJsonFile(path);
   std::vector<DensityReference> references;
   try
   {
-    std::ifstream file(path);
-    if (!file)
-    {
-      throw std::runtime_error("cannot be read");
-    }
-    const nlohmann::json json = nlohmann::json::parse(file);
-    for (const nlohmann::json & item : json.at("references"))
+    for (const nlohmann::json & item : Member(document, "references"))
     {
       references.push_back(ReadReference(item));
     }
   }
-  catch (const std::exception & error)
+  catch (const itk::ExceptionObject & error)
   {
-    throw std::runtime_error(path + ": " + error.what());
+    throw IOError(path, "reference " + std::to_string(references.size() + 1) + ": " + ErrorLine(error));
   }
   return references;
 }
 
 /** Gives the filter the references and the images that these are measured in. */
 void
-UseReferences(const CalibrateOptions & options, DensityQuantity to, DensityCalibrationFilter<CTImage> & filter)
+UseReferences(const CalibrateOptions &            options,
+              DensityQuantity                     to,
+              DensityCalibrationFilter<CTImage> & filter,
+              Session &                           session)
 {
   const auto references = ReadReferences(options.references);
   for (const DensityReference & reference : references)
@@ -100,13 +92,15 @@ UseReferences(const CalibrateOptions & options, DensityQuantity to, DensityCalib
     }
   }
   filter.SetReferences(references, to);
-  if (!options.ct.empty())
+  if (options.ct.empty())
   {
-    filter.SetImage(ReadCT(options.ct));
+    return;
   }
+  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
+  filter.SetImage(ct);
   if (!options.labels.empty())
   {
-    filter.SetLabels(ReadLabels(options.labels));
+    filter.SetLabels(ReadLabelsOnGrid(options.labels, ct, session));
   }
 }
 
@@ -164,7 +158,7 @@ RunCalibrate(const CalibrateOptions & options, Session & session)
   }
   else if (!options.references.empty())
   {
-    UseReferences(options, to, *filter);
+    UseReferences(options, to, *filter, session);
   }
   filter->SetLaws(options.laws);
   filter->Update();
@@ -187,7 +181,8 @@ AddCalibrateCommand(CLI::App & app, Action & action)
                  "Phantom rods or tissues of known density (.json), through which a line is fitted")
     ->excludes(line);
   command->add_option("--ct", options->ct, "CT that rods and tissues are measured in");
-  command->add_option("--labels", options->labels, "Label map on the CT's grid for references named by a label");
+  AddSeriesOption(command, options->series);
+  command->add_option("--labels", options->labels, "Label map for references named by a label");
   command
     ->add_option("--law",
                  options->laws,

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -21,6 +22,7 @@ namespace
 struct ContoursOptions
 {
   std::string              ct;
+  std::string              series;
   BoneOptions              bone;
   BuildParameters          parameters;
   bool                     tetrahedra{ false };   ///< asked for
@@ -52,10 +54,13 @@ Verify(const ContoursOptions & options)
 
 /** Sets the spacings of a build for slices and contours that are given, or of every slice and the default spacing. */
 void
-SetGivenResolution(const ContoursOptions & options, const BuildInput & input, BuildPipeline & pipeline)
+SetGivenResolution(const ContoursOptions & options,
+                   const BuildParameters & parameters,
+                   const BuildInput &      input,
+                   BuildPipeline &         pipeline)
 {
-  const BuildPlanParameters & plan = options.parameters.plan;
-  SetBuild(input, options.parameters, pipeline);
+  const BuildPlanParameters & plan = parameters.plan;
+  SetBuild(input, parameters, pipeline);
   const double spacing = plan.contourSpacing > 0.0 ? plan.contourSpacing : ContourResampleParameters().maximumSpacing;
   if (plan.sliceStep > 0.0)
   {
@@ -67,7 +72,7 @@ SetGivenResolution(const ContoursOptions & options, const BuildInput & input, Bu
   {
     pipeline.SetContourSpacing(spacing);
   }
-  const ContourResampleParameters & resample = options.parameters.resample;
+  const ContourResampleParameters & resample = parameters.resample;
   if (options.leastSpacing)
   {
     pipeline.GetResample()->SetMinimumSpacing(resample.minimumSpacing);
@@ -82,28 +87,29 @@ void
 RunContours(const ContoursOptions & options, Session & session)
 {
   Verify(options);
-  const BuildPlanParameters & plan = options.parameters.plan;
-  const BoneInput             bone = ReadBone(options.bone, plan.label, plan.axis);
-  const CTImage::Pointer      ct = ReadCT(options.ct);
-  BuildPipeline               pipeline(1);
+  BuildParameters        parameters = options.parameters;
+  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
+  const BoneInput        read = ReadBones(options.bone, parameters.plan.axis, ct, session).front();
+  parameters.plan.label = read.bone.label;
+  BuildPipeline pipeline(1);
   for (const auto & [name, filter] : pipeline.GetStages())
   {
     session.Watch(filter, name);
   }
-  BuildInput input{ ct, bone.labels, nullptr, bone.contours, 0.0 };
+  BuildInput input{ ct, read.bone.labels, nullptr, read.contours, 0.0 };
   if (options.tetrahedra)
   {
-    if (bone.labels)
+    if (input.labels)
     {
-      input.surface = MeasureLabel(bone.labels, plan.label).surface;
+      input.surface = MeasureLabel(input.labels, read.bone.label).surface;
     }
-    PlanBuild(input, options.parameters, pipeline, [&session](const Resolution &, IdType tried) {
+    PlanBuild(input, parameters, pipeline, [&session](const Resolution &, IdType tried) {
       session.Print("tiled with " + std::to_string(tried) + " tetrahedra\n");
     });
   }
   else
   {
-    SetGivenResolution(options, input, pipeline);
+    SetGivenResolution(options, parameters, input, pipeline);
   }
   pipeline.GetMedialAxis()->Update();
   const ContourStack * contours = pipeline.GetMedialAxis()->GetOutput();
@@ -138,10 +144,10 @@ AddContoursCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<ContoursOptions>();
   auto * command = app.add_subcommand("contours", "Contours of a bone on every slice, by layer, with medial axes");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
+  AddSeriesOption(command, options->series);
   options->bone.AddTo(command);
   BuildParameters & parameters = options->parameters;
-  AddParameterOptions(
-    command, parameters.plan, { "label", "tetrahedra", "sliceStep", "regularSlices", "contourSpacing" });
+  AddParameterOptions(command, parameters.plan, { "tetrahedra", "sliceStep", "regularSlices", "contourSpacing" });
   AddAxisOption(command, parameters.plan.axis);
   AddParameterOptions(command,
                       parameters.contours,

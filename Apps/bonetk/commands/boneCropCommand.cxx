@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -14,19 +15,22 @@ namespace
 struct CropOptions
 {
   std::string         ct;
-  std::string         labels;
+  std::string         series;
+  LabelOptions        labels;
   BuildPlanParameters plan;
   std::string         output;
   std::string         labelsOutput;
 };
 
 void
-RunCrop(const CropOptions & options, Session &)
+RunCrop(const CropOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, ImageExtensions() }, { options.labelsOutput, ImageExtensions() } });
-  const CTImage::Pointer    ct = ReadCT(options.ct);
-  const LabelImage::Pointer labels = ReadBoneLabels(options.labels, options.plan.label);
-  const BuildInput          input = CropToBone(ct, labels, nullptr, options.plan);
+  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
+  const LabelledBone     bone = ReadBoneLabels(options.labels, ct, session).front();
+  BuildPlanParameters    plan = options.plan;
+  plan.label = bone.label;
+  const BuildInput input = CropToBone(ct, bone.labels, nullptr, plan);
   WriteImage(input.ct, options.output);
   if (!options.labelsOutput.empty())
   {
@@ -41,8 +45,9 @@ AddCropCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<CropOptions>();
   auto * command = app.add_subcommand("crop", "Cut a CT and its label map down to one bone, as build does");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
-  command->add_option("--labels", options->labels, "Label map on the CT's grid")->required();
-  AddParameterOptions(command, options->plan, { "label", "cropMargin" });
+  AddSeriesOption(command, options->series);
+  options->labels.AddTo(command, "Label map, or closed surface, of the bone")->required();
+  AddParameterOptions(command, options->plan, { "cropMargin" });
   command->add_option("-o,--output", options->output, "CT to write; .mha and .nrrd keep its place exactly")->required();
   command->add_option("--write-labels", options->labelsOutput, "Label map to write");
   command->callback([options, &action] { action = [options](Session & session) { RunCrop(*options, session); }; });

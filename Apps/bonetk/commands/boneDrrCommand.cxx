@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 
 #include "boneFileName.h"
@@ -22,6 +23,7 @@ namespace
 struct DrrOptions
 {
   std::string input;
+  std::string series;
   std::string geometry;
   std::string mask;
   bool        attenuation{ false };
@@ -37,7 +39,7 @@ struct DrrOptions
 using Radiograph = CTImage;
 
 itk::SmartPointer<RadiographSource<Radiograph>>
-MakeSource(const DrrOptions & options)
+MakeSource(const DrrOptions & options, Session & session)
 {
   if (HasExtension(options.input, ".vtu"))
   {
@@ -58,11 +60,12 @@ MakeSource(const DrrOptions & options)
   {
     throw UsageError("--region goes with a density mesh only");
   }
-  auto filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
-  filter->SetInput(ReadCT(options.input));
+  auto                   filter = VoxelDRRImageFilter<CTImage, Radiograph>::New();
+  const CTImage::Pointer ct = ReadChosenCT(options.input, options.series, session);
+  filter->SetInput(ct);
   if (!options.mask.empty())
   {
-    filter->SetMask(ReadLabels(options.mask));
+    filter->SetMask(ReadLabelsOnGrid(options.mask, ct, session));
   }
   return filter.GetPointer();
 }
@@ -138,7 +141,7 @@ RunDrr(const DrrOptions & options, Session & session)
     files.push_back({ ViewPath(options.output, i, views.size()), ImageExtensions() });
   }
   VerifyOutputs(files);
-  auto source = MakeSource(options);
+  auto source = MakeSource(options, session);
   source->SetHUToAttenuation(options.bilinear      ? HUToAttenuation::Bilinear
                              : options.attenuation ? HUToAttenuation::WaterScaled
                                                    : HUToAttenuation::None);
@@ -165,9 +168,10 @@ AddDrrCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<DrrOptions>();
   auto * command = app.add_subcommand("drr", "Digitally reconstructed radiograph of a density mesh or a voxel image");
   command->add_option("input", options->input, "Density mesh (.vtu), or a CT")->required();
+  AddSeriesOption(command, options->series);
   command->add_option("--geometry", options->geometry, "Views (.json); several write NAME_V1, NAME_V2, ...")
     ->required();
-  command->add_option("--mask", options->mask, "Label map on the CT's grid: only voxels that are not 0 count");
+  command->add_option("--mask", options->mask, "Label map: only voxels that are not 0 count");
   command->add_flag("--attenuation", options->attenuation, "Turn HU into attenuation of water at 60 keV first");
   command->add_flag(
     "--bilinear", options->bilinear, "Turn HU into attenuation, bone along a line of its own (CT only)");

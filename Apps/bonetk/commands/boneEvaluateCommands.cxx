@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -82,11 +83,12 @@ struct ProfileOptions
   std::vector<double> to;
   std::size_t         points{ 201 };
   std::string         ct;
+  std::string         series;
   std::string         output;
 };
 
 void
-RunProfile(const ProfileOptions & options, Session &)
+RunProfile(const ProfileOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, { ".csv" } } });
   const MeshArrays mesh = ReadMeshArrays(options.mesh);
@@ -96,7 +98,7 @@ RunProfile(const ProfileOptions & options, Session &)
   VoxelGrid        grid;
   if (!options.ct.empty())
   {
-    ct = ReadCT(options.ct);
+    ct = ReadChosenCT(options.ct, options.series, session);
     grid = MakeVoxelGrid(*ct, ct->GetBufferedRegion());
   }
   const Eigen::Matrix3d toIndex = grid.axes.inverse();
@@ -152,6 +154,7 @@ AddProfileCommand(CLI::App & app, Action & action)
   command->add_option("--points", options->points, "Number of places; default 201")
     ->check(CLI::Range(2, 1000000).description(""));
   command->add_option("--ct", options->ct, "CT to give beside it, linearly interpolated");
+  AddSeriesOption(command, options->series);
   command->add_option("-o,--output", options->output, "Table to write (.csv)")->required();
   command->callback([options, &action] { action = [options](Session & session) { RunProfile(*options, session); }; });
 }

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -25,6 +26,7 @@ using Json = nlohmann::ordered_json;
 struct FitOptions
 {
   std::string          ct;
+  std::string          series;
   std::string          mesh;
   DensityFitParameters parameters;
   std::string          weights;
@@ -98,7 +100,7 @@ void
 RunFit(const FitOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, { ".vtu" } }, { options.report, {} } });
-  const auto ct = ReadCT(options.ct);
+  const auto ct = ReadChosenCT(options.ct, options.series, session);
   auto       fit = Fit::New();
   fit->SetImage(ct);
   fit->SetMesh(ReadDensityMesh(options.mesh));
@@ -130,6 +132,7 @@ AddFitCommand(CLI::App & app, Action & action)
   auto   options = std::make_shared<FitOptions>();
   auto * command = app.add_subcommand("fit", "Fit a Bernstein polynomial to the CT in every tetrahedron");
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
+  AddSeriesOption(command, options->series);
   command->add_option("mesh", options->mesh, "Mesh (.vtu); a density it holds is replaced")->required();
   AddParameterOptions(command, options->parameters);
   command->get_option("--max-error")->excludes(command->get_option("--continuous"));

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneDescribe.h"
+#include "boneInputOptions.h"
 
 #include "boneContourIO.h"
 #include "boneFileName.h"
@@ -57,7 +58,7 @@ DescribePolyData(const std::string & path)
 }
 
 std::string
-Describe(const std::string & path)
+Describe(const std::string & path, const std::string & series, Session & session)
 {
   if (HasExtension(path, ".vtu"))
   {
@@ -92,16 +93,20 @@ Describe(const std::string & path)
   {
     return DescribeSurface(ReadTriangleSurface(path));
   }
+  if (HasExtension(path, ".seg.nrrd"))
+  {
+    return DescribeLabelFile(ReadLabelFile(path));
+  }
   try
   {
-    return DescribeImage(*ReadCT(path));
+    return DescribeImage(*ReadChosenCT(path, series, session), ReadLabelNames(path));
   }
   catch (const IOError & volume)
   {
     // A radiograph is an image of one slice, which is no CT.
     try
     {
-      return DescribeImage(*ReadRadiograph(path));
+      return DescribeImage(*ReadRadiograph(path), {});
     }
     catch (const IOError &)
     {
@@ -115,9 +120,13 @@ void
 AddInfoCommand(CLI::App & app, Action & action)
 {
   auto   path = std::make_shared<std::string>();
+  auto   series = std::make_shared<std::string>();
   auto * command = app.add_subcommand("info", "Say what is in a file, or in a folder with a DICOM series");
   command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, statistical model, surface or image")
     ->required();
-  command->callback([path, &action] { action = [path](Session & session) { session.Print(Describe(*path)); }; });
+  AddSeriesOption(command, *series);
+  command->callback([path, series, &action] {
+    action = [path, series](Session & session) { session.Print(Describe(*path, *series, session)); };
+  });
 }
 } // namespace bone

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -18,6 +19,7 @@ struct MeshOptions
 {
   std::string      contours;
   std::string      ct;
+  std::string      series;
   TilingParameters parameters;
   std::string      correspondence;
   std::string      correspondenceOutput;
@@ -41,7 +43,7 @@ RunMesh(const MeshOptions & options, Session & session)
   }
   if (!options.ct.empty())
   {
-    tiling->SetDensityImage(ReadCT(options.ct));
+    tiling->SetDensityImage(ReadChosenCT(options.ct, options.series, session));
   }
   else if (options.parameters.metric == TilingMetricKind::Combined)
   {
@@ -68,6 +70,7 @@ AddMeshCommand(CLI::App & app, Action & action)
   auto * command = app.add_subcommand("mesh", "Tile contours into a layered tetrahedral mesh");
   command->add_option("contours", options->contours, "Contours (.vtp)")->required();
   command->add_option("--ct", options->ct, "CT whose density the metric follows");
+  AddSeriesOption(command, options->series);
   AddParameterOptions(command, options->parameters);
   command->add_option("--correspondence",
                       options->correspondence,

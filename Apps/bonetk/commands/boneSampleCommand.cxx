@@ -12,6 +12,7 @@
 #include "boneTriangleSurface.h"
 
 #include <cmath>
+#include <sstream>
 
 namespace bone
 {
@@ -31,7 +32,7 @@ struct SampleOptions
 
 /** Coefficients from "k=sigma", k counted from 1. */
 Eigen::VectorXd
-Coefficients(const std::vector<std::string> & settings, Eigen::Index modes, const std::string & option)
+Coefficients(const std::vector<std::string> & settings, Eigen::Index modes, const std::string & option, double limit)
 {
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(modes);
   for (const std::string & setting : settings)
@@ -47,6 +48,17 @@ Coefficients(const std::vector<std::string> & settings, Eigen::Index modes, cons
     if (mode > modes)
     {
       throw UsageError(option + " " + setting + ": the model has " + std::to_string(modes) + " such modes");
+    }
+    if (std::abs(value) > limit)
+    {
+      std::ostringstream message;
+      message << option << ' ' << setting << " is more than " << limit
+              << " standard deviations from the mean, which hardly a member of the population is; --limit takes more";
+      throw UsageError(message.str());
+    }
+    if (coefficients[mode - 1] != 0.0)
+    {
+      throw UsageError(option + " gives mode " + std::to_string(mode) + " twice");
     }
     coefficients[mode - 1] = value;
   }
@@ -76,12 +88,13 @@ RunSample(const SampleOptions & options, Session & session)
   VerifyOutputs({ { options.output, { ".vtu" } } });
   const auto      model = ReadStatisticalModel(options.input);
   const auto &    content = model->GetContent();
-  Eigen::VectorXd shape = Coefficients(options.shape, content.shape.GetNumberOfModes(), "--shape");
-  Eigen::VectorXd density = Coefficients(options.density, content.density.GetNumberOfModes(), "--density");
+  Eigen::VectorXd shape = Coefficients(options.shape, content.shape.GetNumberOfModes(), "--shape", options.limit);
+  Eigen::VectorXd density =
+    Coefficients(options.density, content.density.GetNumberOfModes(), "--density", options.limit);
   if (!options.combined.empty())
   {
     model->SplitCombined(
-      Coefficients(options.combined, content.combined.variances.size(), "--combined"), shape, density);
+      Coefficients(options.combined, content.combined.variances.size(), "--combined", options.limit), shape, density);
   }
   if (options.random)
   {
@@ -93,9 +106,13 @@ RunSample(const SampleOptions & options, Session & session)
   const auto report = UntangleMesh(content.mean, exterior, AffineMap(), mesh.points);
   if (report.before > 0)
   {
-    session.Warn("the shape inverted " + std::to_string(report.before) + " tetrahedra; " +
-                 (report.after == 0 ? std::string("they were repaired")
-                                    : std::to_string(report.after) + " are left: it is too far from the mean"));
+    const std::string inverted = "the shape inverts " + std::to_string(report.before) + " tetrahedra";
+    if (report.after > 0)
+    {
+      throw std::runtime_error(inverted + ", of which " + std::to_string(report.after) +
+                               " cannot be repaired: it is too far from the mean. Take smaller coefficients");
+    }
+    session.Warn(inverted + "; they were repaired");
   }
   WriteMeshArrays(mesh, options.output);
 }
@@ -120,9 +137,11 @@ AddSampleCommand(CLI::App & app, Action & action)
                   ->excludes(shape)
                   ->excludes(density)
                   ->excludes(combined);
-  command->add_option("--limit", options->limit, "Cut random coefficients at so many standard deviations; default 3")
-    ->check(Positive())
-    ->needs(seed);
+  command
+    ->add_option("--limit",
+                 options->limit,
+                 "How many standard deviations from the mean a coefficient may be, given or random; default 3")
+    ->check(Positive());
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, seed, &action] {
     options->random = seed->count() > 0;

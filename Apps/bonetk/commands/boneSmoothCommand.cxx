@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
@@ -21,7 +22,7 @@ struct SmoothOptions
   std::string              input;
   std::string              method{ "quality" };
   std::string              contours;
-  std::string              labels;
+  LabelOptions             labels;
   BuildPlanParameters      plan;
   MeshQualityParameters    quality;
   TetraSmoothingParameters smoothing;
@@ -35,7 +36,7 @@ using FilterType = MeshToMeshFilter<MeshType>;
 
 /** The whole chain of \ref MeshQualityFilter, as `bonetk build` has it. */
 FilterType::Pointer
-MakeQuality(const SmoothOptions & options)
+MakeQuality(const SmoothOptions & options, Session & session)
 {
   auto quality = MeshQualityFilter<MeshType>::New();
   quality->SetParameters(options.quality);
@@ -43,13 +44,14 @@ MakeQuality(const SmoothOptions & options)
   {
     quality->SetContours(ReadContours(options.contours));
   }
-  if (!options.labels.empty())
+  if (!options.labels.file.empty())
   {
-    const LabelImage::Pointer labels = ReadBoneLabels(options.labels, options.quality.label);
-    quality->SetLabelImage(labels);
+    const LabelledBone bone = ReadBoneLabels(options.labels, nullptr, session).front();
+    quality->SetLabelImage(bone.labels);
+    quality->SetLabel(bone.label);
     if (!options.distance)
     {
-      quality->SetDistanceBound(FindDistanceBound(*labels, options.plan));
+      quality->SetDistanceBound(FindDistanceBound(*bone.labels, options.plan));
     }
   }
   return quality.GetPointer();
@@ -75,8 +77,9 @@ void
 RunSmooth(const SmoothOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, { ".vtu" } } });
-  const FilterType::Pointer filter = options.method == "quality" ? MakeQuality(options) : MakeSmoothing(options);
-  const MeshType::Pointer   mesh = ReadDensityMesh(options.input);
+  const FilterType::Pointer filter =
+    options.method == "quality" ? MakeQuality(options, session) : MakeSmoothing(options);
+  const MeshType::Pointer mesh = ReadDensityMesh(options.input);
   if (mesh->GetCells().HasDensity())
   {
     session.Warn("the density of " + options.input + " does not hold for moved tetrahedra and is left out: fit again");
@@ -104,12 +107,11 @@ AddSmoothCommand(CLI::App & app, Action & action)
     ->type_name("quality|enhanced|smart|laplacian");
   command->add_option(
     "--contours", options->contours, "Contours (.vtp) of the bone, to which quality fits the surfaces");
-  command->add_option(
-    "--labels", options->labels, "Label map of the bone, to whose voxels quality fits the surface next to contours");
+  options->labels.AddTo(command, "Label map of the bone, to whose voxels quality fits the surface next to contours");
+  command->get_option("--label")->needs("--labels");
   AddParameterOptions(command, options->quality);
   AddParameterOptions(command, options->smoothing, { "weight", "angleFloor" });
   AddAxisOption(command, options->plan.axis);
-  command->get_option("--label")->needs("--labels");
   command->get_option("--iterations")->description("Passes of smoothing; default 4 (at its start) in quality, else 10");
   command->get_option("--distance")
     ->description("How far a surface may go, in mm; default 0.3, with --labels half a pixel of it at most");

@@ -68,6 +68,7 @@ RunTrain(const TrainOptions & options, Session & session)
                      " must be a mesh (.vtu): put one first in the list, or give --standard");
   }
   PopulationRegistration population(ReadDensityMesh(standard), options.degree);
+  VerifySubjects(subjects);
   population.GetFilter()->SetParameters(options.registration);
   session.Watch(population.GetFilter(), "registration");
 
@@ -148,7 +149,7 @@ AddTrainCommand(CLI::App & app, Action & action)
                       { "varianceProportion",
                         "maximumModes",
                         "combined",
-                        "volumeWeighted",
+                        "coefficientProduct",
                         "withinCellWeight",
                         "outlierThreshold",
                         "rejectOutliers" });

@@ -23,10 +23,10 @@ namespace bone
  * inner products between subjects, in double. Subjects' densities are read one after the other; only shapes, a block of
  * densities and the modes are in memory.
  *
- * Parameters: \ref StatisticalModelParameters. With Combined there is Cootes' combined model of both too. With
- * VolumeWeighted the inner product of densities is their integral over the mean mesh, so that cells count by their
- * volume and modes are those of the density as a function, whatever its degree; else each coefficient counts alike, as
- * in the paper. WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur
+ * Parameters: \ref StatisticalModelParameters. With Combined there is Cootes' combined model of both too. The
+ * inner product of densities is their integral over the mean mesh, so that cells count by their volume and modes are
+ * those of the density as a function, whatever its degree; with CoefficientProduct each coefficient counts alike, as in
+ * the paper (6.2). WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur
  * at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
  *
  * Results do not depend on the number of threads. Throws itk::ExceptionObject where there are fewer than two subjects,

@@ -19,10 +19,10 @@ namespace bone
   value(int, maximumModes, MaximumModes, 0, ParameterRange::AtLeast(0), "", "modes", \
     "Largest number of modes of each; 0: no limit") \
   flag(combined, Combined, false, "combined", "Combined modes of shape and density too") \
-  flag(volumeWeighted, VolumeWeighted, false, "volume-weighted", \
-    "Modes of density by integrals over the volume in place of coefficients") \
+  flag(coefficientProduct, CoefficientProduct, false, "coefficient-product", \
+    "Modes of density by coefficients, which count alike as in the paper, in place of integrals over the volume") \
   value(double, withinCellWeight, WithinCellWeight, 0.25, ParameterRange::Above(0.0, 1.0), "", "within-cell-weight", \
-    "With --volume-weighted: how much the variation within a tetrahedron counts against its mean; 1: the integral") \
+    "In integrals over the volume: how much the variation within a tetrahedron counts against its mean; 1: the integral") \
   value(double, outlierThreshold, OutlierThreshold, 3.5, ParameterRange::NotNegativeOrInfinite(), "", \
     "outlier-threshold", "Modified z-score of the distance to the mean above which a subject is an outlier; 0: none is") \
   flag(rejectOutliers, RejectOutliers, false, "reject-outliers", "Leave outliers out") \

@@ -14,10 +14,11 @@ namespace bone
 {
 namespace
 {
-constexpr Eigen::Index Batch = 16;         // vectors streamed at once
-constexpr Eigen::Index RowChunk = 4096;    // entries a thread works on
-constexpr Eigen::Index ColumnTile = 32;    // vectors of a held block that a thread works on
-constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
+constexpr Eigen::Index Batch = 16;            // vectors streamed at once
+constexpr Eigen::Index RowChunk = 4096;       // entries a thread works on
+constexpr Eigen::Index ColumnTile = 32;       // vectors of a held block that a thread works on
+constexpr double       NoiseLevel = 1e-13;    // of the largest eigenvalue
+constexpr double       RoundingLevel = 1e-11; // of the mean's length: what differs by less does not differ
 
 void
 InParallel(const Execution & execution, Eigen::Index count, const std::function<void(Eigen::Index)> & body)
@@ -178,12 +179,12 @@ GramMatrix(const CentredReader & reader,
 }
 
 Eigen::Index
-CountModes(const Eigen::VectorXd & variances, double total, const GramParameters & parameters)
+CountModes(const Eigen::VectorXd & variances, double total, double noise, const GramParameters & parameters)
 {
   Eigen::Index k = 0;
   double       explained = 0;
   const bool   all = parameters.proportion >= 1.0;
-  while (k < variances.size() && variances[k] > NoiseLevel * variances[0] &&
+  while (k < variances.size() && variances[k] > std::max(noise, NoiseLevel * variances[0]) &&
          (all || explained < parameters.proportion * total) &&
          (parameters.maximumModes <= 0 || k < parameters.maximumModes))
   {
@@ -262,7 +263,10 @@ AnalyzeVectors(const VectorSource &    source,
   result.weights = weights;
   result.block = block;
   result.totalVariance = gram.trace();
-  const Eigen::Index k = CountModes(variances, result.totalVariance, parameters);
+  Eigen::MatrixXd mean = result.mean;
+  product.To(mean);
+  const double       rounding = RoundingLevel * mean.norm();
+  const Eigen::Index k = CountModes(variances, result.totalVariance, rounding * rounding, parameters);
   result.variances = variances.head(k);
   Eigen::MatrixXd vectors = eigen.vectors.rowwise().reverse().leftCols(k);
   result.modes.setZero(d, k);

@@ -36,7 +36,7 @@ struct GramParameters
  *
  * Reads the source once for the mean, (1 + blocks) / 2 times for the inner products and once for the modes; vectors in
  * memory: blockBytes, then the modes. Eigenvalues are with count - 1 in the denominator; those below 1e-13 of the
- * largest are rounding and left out. A mode's largest entry is positive. The modes are made orthonormal to rounding by
+ * largest, or whose root is below 1e-11 of the mean's length, are rounding and left out. A mode's largest entry is positive. The modes are made orthonormal to rounding by
  * one Cholesky-QR step. The result is the same for any number of threads.
  *
  * `weights`, `block`: of the inner product (\ref PrincipalModes), empty for the plain one. `scores`: #count by #k

@@ -230,10 +230,10 @@ AnalyzeSubjects(const TrainingSet &                set,
   content.shape = AnalyzeVectors(ShapeSource(shapes), {}, {}, gram, &content.shapeScores, execution.Part(0.1, 0.4));
   if (topology.HasDensity())
   {
-    const Eigen::VectorXd weights = parameters.volumeWeighted ? VolumeWeights(content.mean) : Eigen::VectorXd();
-    const Eigen::MatrixXd block = parameters.volumeWeighted
-                                    ? BernsteinGram(content.mean.maximumDegree, parameters.withinCellWeight)
-                                    : Eigen::MatrixXd();
+    const Eigen::VectorXd weights = parameters.coefficientProduct ? Eigen::VectorXd() : VolumeWeights(content.mean);
+    const Eigen::MatrixXd block = parameters.coefficientProduct
+                                    ? Eigen::MatrixXd()
+                                    : BernsteinGram(content.mean.maximumDegree, parameters.withinCellWeight);
     const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
     content.density = AnalyzeVectors(
       DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores, execution.Part(0.4, 1.0));

@@ -18,7 +18,7 @@ constexpr double LeastLayerDistance = 0.8;
   value(double, sliceStep, SliceStep, 0.0, ParameterRange::LengthOrZero(), "mm", "", \
     "Distance of slices; 0: every slice of the image. Other planes are interpolated; with a label the distance is made " \
     "smaller as needed for the first and last plane to fall on the label's first and last slice") \
-  value(int, label, Label, 0, ParameterRange::Any(), "", "label", \
+  value(int, label, Label, 0, ParameterRange::Any(), "", "", \
     "The bone's value in the label map; 0: every value but 0") \
   flag(refineLabelOutline, RefineLabelOutline, false, "refine", \
     "Move the label's outline to the edges of the CT; else the contours keep the label's area") \

@@ -66,7 +66,7 @@ DensityCalibrationFilter<TImage, TMesh, TLabelImage>::VerifyPreconditions() cons
   if (line.empty() && m_References.empty() && m_Laws.empty())
   {
     itkExceptionMacro(
-      "There is nothing to apply; give a line (SetLine), references (SetReferences) or laws (SetLaws).");
+      "There is nothing to apply; a line, references or laws are needed.");
   }
   if (!line.empty() && !m_References.empty())
   {

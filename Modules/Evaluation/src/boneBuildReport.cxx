@@ -203,7 +203,8 @@ ToText(const BuildReport & report)
 {
   std::ostringstream           os;
   const DensityFitParameters & fit = report.parameters.fit;
-  os << report.files.image << ": " << report.slices << " slices, on average " << Fixed(report.meanSliceDistance, 2)
+  os << report.files.image << (report.files.labelName.empty() ? "" : ", " + report.files.labelName) << ": "
+     << report.slices << " slices, on average " << Fixed(report.meanSliceDistance, 2)
      << " mm apart, contour points at most " << Fixed(report.resolution.contourSpacing, 2) << " mm apart, degree "
      << fit.degree << (fit.continuous ? ", continuous" : "") << "\n\n";
   int level = 0;
@@ -244,7 +245,10 @@ ToJson(const BuildReport & report)
   nlohmann::ordered_json json;
   json["version"] = report.version;
   json["input"] = { { "image", report.files.image },
+                    { "series", report.files.series },
                     { "labels", report.files.labels },
+                    { "labelNames", report.files.labelNames },
+                    { "labelName", report.files.labelName },
                     { "initialContours", report.files.initialContours },
                     { "structure", report.files.structure } };
   json["parameters"] = nlohmann::ordered_json::parse(ToJson(report.parameters));

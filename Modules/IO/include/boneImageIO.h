@@ -4,10 +4,13 @@
 #ifndef boneImageIO_h
 #define boneImageIO_h
 
+#include "boneIOError.h"
+
 #include <itkImage.h>
 #include <itkRGBPixel.h>
 
 #include <string>
+#include <vector>
 
 namespace bone
 {
@@ -20,15 +23,28 @@ using CTImage = itk::Image<float, 3>;
 using LabelImage = itk::Image<short, 3>;
 using PictureImage = itk::Image<itk::RGBPixel<unsigned char>, 2>;
 
-/** Reads a volume from a file, or the one DICOM series in a folder. Refuses what is missing, no image, 2D or 4D, of one
- * slice, with several components per voxel, with voxels that are NaN or infinite, or with a direction that is not
- * orthonormal (ITK cannot hold a sheared grid). A DICOM series must have slice positions that are evenly spaced (each
- * within 5 % of the spacing) and lie along the slices' normal (no gantry tilt). */
+/** A folder holds several DICOM series, which the message lists. */
+class SeveralSeries : public IOError
+{
+public:
+  using IOError::IOError;
+};
+
+/** \brief Reads a volume from a file, or a DICOM series from a folder and the folders in it.
+ *
+ * Refuses what is missing, no image, 2D or 4D, of one slice, with several components per voxel, with voxels that are
+ * NaN or infinite, or with a direction that is not orthonormal (ITK cannot hold a sheared grid). A DICOM series must
+ * have slice positions that are evenly spaced (each within 5 % of the spacing) and lie along the slices' normal (no
+ * gantry tilt). `series` is the number, UID or description of a series; where it is empty and the folder holds several
+ * volumes, SeveralSeries is thrown. Scouts, images without a place and copies of a file are passed over, which `notes`
+ * is told.
+ */
 CTImage::Pointer
-ReadCT(const std::string & path);
+ReadCT(const std::string & path, const std::string & series = "", std::vector<std::string> * notes = nullptr);
 
 /** The same for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. What its header
- * says of its labels (\ref StatesOneBone) is kept. */
+ * says of its labels (\ref StatesOneBone) is kept. Refuses a .seg.nrrd with overlapping segments, which ReadLabelFile
+ * reads. */
 LabelImage::Pointer
 ReadLabels(const std::string & path);
 

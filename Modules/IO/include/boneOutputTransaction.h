@@ -36,9 +36,13 @@ public:
   OutputTransaction &
   operator=(const OutputTransaction &) = delete;
 
-  /** Throws IOError where a file cannot be renamed; then all are as they were. */
+  /** Throws IOError where a file cannot be renamed; then all are as they were. What is taken later needs another. */
   void
   Commit();
+
+  /** Commits the transaction that lives, where there is one: what follows may fail, and what is done is not lost. */
+  static void
+  CommitTaken();
 
   /** Makes the moves and removes the files that they make out of date: in the transaction that lives, or at once.
    * `owner` holds what they need. Throws IOError where a name was taken already by another output. */

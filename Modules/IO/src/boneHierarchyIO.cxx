@@ -93,7 +93,15 @@ std::vector<std::string>
 FormerLevels(const std::string & jsonPath, const std::vector<std::string> & paths)
 {
   std::vector<std::string> files;
-  const json               former = json::parse(std::ifstream(jsonPath), nullptr, false);
+  json                     former;
+  try
+  {
+    former = ReadJsonFile(jsonPath);
+  }
+  catch (const IOError &)
+  {
+    return files; // there is none
+  }
   for (const json & level : former.is_object() && former.contains("levels") ? former["levels"] : json::array())
   {
     const auto        entry = level.find("file");

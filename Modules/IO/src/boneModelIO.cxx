@@ -38,12 +38,21 @@ NativeType()
   }
 }
 
+/** A dataset without the time it was made at: the same model gives the same file. */
+H5::DataSet
+MakeDataSet(const H5::Group & group, const std::string & name, const H5::DataType & type, const H5::DataSpace & space)
+{
+  const H5::DSetCreatPropList properties;
+  H5Pset_obj_track_times(properties.getId(), false);
+  return group.createDataSet(name, type, space, properties);
+}
+
 template <typename T>
 void
 Put(const H5::Group & group, const std::string & name, const T * data, const Sizes & sizes)
 {
   const H5::DataSpace space(static_cast<int>(sizes.size()), sizes.data());
-  group.createDataSet(name, NativeType<T>(), space).write(data, NativeType<T>());
+  MakeDataSet(group, name, NativeType<T>(), space).write(data, NativeType<T>());
 }
 
 void
@@ -63,14 +72,14 @@ template <typename T>
 void
 PutScalar(const H5::Group & group, const std::string & name, T value)
 {
-  group.createDataSet(name, NativeType<T>(), H5::DataSpace()).write(&value, NativeType<T>());
+  MakeDataSet(group, name, NativeType<T>(), H5::DataSpace()).write(&value, NativeType<T>());
 }
 
 void
 PutText(const H5::Group & group, const std::string & name, const std::string & text)
 {
   const H5::StrType type(H5::PredType::C_S1, std::max<std::size_t>(text.size(), 1));
-  group.createDataSet(name, type, H5::DataSpace()).write(text, type);
+  MakeDataSet(group, name, type, H5::DataSpace()).write(text, type);
 }
 
 void

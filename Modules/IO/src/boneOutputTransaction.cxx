@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 #include <stdexcept>
 
 #include <sys/stat.h>
@@ -104,10 +105,20 @@ OutputTransaction::~OutputTransaction()
 void
 OutputTransaction::Commit()
 {
-  MoveAll(m_Moves, m_OutOfDate);
-  m_Moves.clear();
-  m_OutOfDate.clear();
-  m_Owners.clear();
+  // Whether it succeeds or not, the next Commit() is about others.
+  const auto moves = std::exchange(m_Moves, {});
+  const auto outOfDate = std::exchange(m_OutOfDate, {});
+  const auto owners = std::exchange(m_Owners, {});
+  MoveAll(moves, outOfDate);
+}
+
+void
+OutputTransaction::CommitTaken()
+{
+  if (OutputTransaction * all = current)
+  {
+    all->Commit();
+  }
 }
 
 void

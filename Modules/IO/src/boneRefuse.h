@@ -81,6 +81,10 @@ NamingFile(const std::string & path, TAction && action)
   {
     throw;
   }
+  catch (const itk::MemoryAllocationError &)
+  {
+    throw IOError(path, "is damaged, or needs more memory than there is");
+  }
   catch (const itk::ExceptionObject & error)
   {
     throw IOError(path, ErrorLine(error));

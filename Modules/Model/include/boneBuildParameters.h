@@ -26,7 +26,7 @@ DefaultLevels()
 
 // clang-format off
 #define BONE_BUILD_PLAN_PARAMETERS(value, flag) \
-  value(int, label, Label, 0, ParameterRange::Any(), "", "label", \
+  value(int, label, Label, 0, ParameterRange::Any(), "", "", \
     "The bone's value in the label map; 0: its only one, or all where the map states that they are regions of one bone") \
   value(unsigned int, axis, Axis, 2, ParameterRange::Between(0, 2), "", "", \
     "Image axis, 0 to 2, that the slices follow one another along") \
@@ -92,7 +92,10 @@ struct BuildParameters
 struct BuildFiles
 {
   std::string image;           ///< file of the CT, or folder of its DICOM series
+  std::string series;          ///< of the folder; empty: its only one
   std::string labels;          ///< empty: none
+  std::string labelNames;      ///< table of names; empty: none, or those in the label map
+  std::string labelName;       ///< of the bone; empty: the plan's label says it
   std::string initialContours; ///< empty: none
   std::string structure;       ///< of a DICOM structure set; empty: its only one
 };

@@ -7,6 +7,7 @@
 #include "boneImageIO.h"
 #include "boneTypes.h"
 
+#include <string>
 #include <vector>
 
 namespace bone
@@ -15,10 +16,23 @@ namespace bone
  * Label 0 stands for every value but 0.
  * \{ */
 
-/** Throws itk::ExceptionObject where the two have not the same grid (size; origin, spacing and direction within 1e-3 of
- * a voxel). */
-void
-VerifySameGrid(const CTImage * ct, const LabelImage * labels);
+/** How far apart the corners of two grids may lie that count as one, in parts of the smallest voxel edge: files round
+ * positions. */
+constexpr double GridTolerance = 1e-2;
+
+/** Whether two images have the same size, and their corner voxels the same places within \ref GridTolerance. */
+bool
+IsSameGrid(const itk::ImageBase<3> * a, const itk::ImageBase<3> * b);
+
+/** The label map with the CT's own origin, spacing and direction, so that no stage finds a difference; voxels are
+ * shared. Throws itk::ExceptionObject where the two have not the same grid. */
+LabelImage::Pointer
+PutOnGrid(const LabelImage * labels, const itk::ImageBase<3> * ct);
+
+/** The label of the nearest voxel at each voxel of the CT. Throws itk::ExceptionObject where the label map does not
+ * cover the CT. */
+LabelImage::Pointer
+ResampleToGrid(const LabelImage * labels, const itk::ImageBase<3> * ct);
 
 /** A value of a label map. */
 struct LabelCount
@@ -26,11 +40,16 @@ struct LabelCount
   int         value{ 0 };
   std::size_t voxels{ 0 };
   double      volume{ 0.0 }; ///< mm^3
+  std::string name;          ///< empty where it has none
 };
 
-/** The values there are but 0, ascending. */
+/** The values there are but 0, ascending, without names. */
 std::vector<LabelCount>
 CountLabels(const LabelImage * labels);
+
+/** "1 'femur_left' (8000 voxels, 8.0 cm^3), 2 (...)": the first twenty. */
+std::string
+ListLabels(const std::vector<LabelCount> & labels);
 
 /** Throws itk::ExceptionObject that lists value, voxels and volume of each label where `label` is 0, there are several
  * and the label map does not state that they are regions of one bone (\ref StatesOneBone): bones are not joined without

@@ -17,7 +17,7 @@ namespace bone
  */
 struct SubjectFiles
 {
-  std::string name;  ///< of the shape's file, without folder and extension
+  std::string name;  ///< of the shape's file, without extension, and of its folders where files have one name
   std::string shape; ///< .vtu, or .ply, .vtp, .stl
   std::string ct;    ///< empty: none
 };
@@ -26,6 +26,10 @@ struct SubjectFiles
  * are relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError. */
 std::vector<SubjectFiles>
 ReadSubjectList(const std::string & path);
+
+/** Reads every file once, as registration takes hours. Throws IOError where one cannot be used. */
+void
+VerifySubjects(const std::vector<SubjectFiles> & subjects);
 
 /** The density of a model at the sample points of another mesh's cells, fitted there with one degree. Each cell takes
  * the density of its own region, that of the nearest place in it where the point lies in another or outside the model:

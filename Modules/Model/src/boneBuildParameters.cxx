@@ -3,10 +3,11 @@
  *=========================================================================*/
 #include "boneBuildParameters.h"
 
-#include <nlohmann/json.hpp>
+#include "boneIOError.h"
+#include "boneJson.h"
 
 #include <cmath>
-#include <fstream>
+#include <limits>
 #include <stdexcept>
 
 namespace bone
@@ -42,23 +43,37 @@ JsonOf(const T & value)
   }
 }
 
+std::string
+TextOf(const nlohmann::json & json)
+{
+  if (!json.is_string())
+  {
+    throw std::invalid_argument(json.dump() + " is no text.");
+  }
+  return json.get<std::string>();
+}
+
 template <typename T>
 T
-ValueOf(const Json & json)
+ValueOf(const nlohmann::json & json)
 {
   if constexpr (std::is_enum_v<T>)
   {
-    return ParseChoice<T>(json.get<std::string>());
+    return ParseChoice<T>(TextOf(json));
   }
   else if constexpr (std::is_same_v<T, bool>)
   {
+    if (!json.is_boolean())
+    {
+      throw std::invalid_argument(json.dump() + " is neither true nor false.");
+    }
     return json.get<bool>();
   }
   else if constexpr (std::is_floating_point_v<T>)
   {
     if (json.is_string())
     {
-      const auto text = json.get<std::string>();
+      const std::string text = TextOf(json);
       if (text != "inf" && text != "-inf")
       {
         throw std::invalid_argument('"' + text + "\" is no number.");
@@ -73,16 +88,21 @@ ValueOf(const Json & json)
   }
   else if constexpr (std::is_arithmetic_v<T>)
   {
-    if (!json.is_number_integer())
+    const double value = json.is_number_integer() ? json.get<double>() : 0.0;
+    if (!json.is_number_integer() || value > std::numeric_limits<int>::max() || value < std::numeric_limits<int>::min())
     {
-      throw std::invalid_argument(json.dump() + " is no whole number.");
+      throw std::invalid_argument(json.dump() + " is no whole number that can be.");
     }
     return json.get<T>();
   }
   else
   {
+    if (!json.is_array())
+    {
+      throw std::invalid_argument(json.dump() + " is no list.");
+    }
     T values;
-    for (const Json & element : json)
+    for (const nlohmann::json & element : json)
     {
       values.push_back(ValueOf<typename T::value_type>(element));
     }
@@ -93,7 +113,7 @@ ValueOf(const Json & json)
 /** Sets the parameters of a stage from an object. Throws std::invalid_argument. */
 template <typename TParameters>
 void
-ReadStage(const Json & object, const std::string & stage, TParameters & parameters)
+ReadStage(const nlohmann::json & object, const std::string & stage, TParameters & parameters)
 {
   for (const auto & item : object.items())
   {
@@ -138,13 +158,8 @@ ReadBuildParameters(const std::string & path, BuildParameters & parameters, Buil
 {
   try
   {
-    std::ifstream file(path);
-    if (!file)
-    {
-      throw std::runtime_error("cannot be read.");
-    }
-    const Json   json = Json::parse(file);
-    const Json & given = json.contains("parameters") ? json.at("parameters") : json;
+    const nlohmann::json   json = ReadJsonFile(path);
+    const nlohmann::json & given = json.contains("parameters") ? json.at("parameters") : json;
     if (!given.is_object())
     {
       throw std::invalid_argument("it holds no parameters: it must be a build's report.json or have its form.");
@@ -166,12 +181,16 @@ ReadBuildParameters(const std::string & path, BuildParameters & parameters, Buil
     }
     if (json.contains("input"))
     {
-      const Json & input = json.at("input");
-      files = { input.value("image", ""),
-                input.value("labels", ""),
-                input.value("initialContours", ""),
-                input.value("structure", "") };
+      const auto text = [&input = json.at("input")](const char * name) {
+        return input.contains(name) ? TextOf(input.at(name)) : std::string();
+      };
+      files = { text("image"),     text("series"),          text("labels"),   text("labelNames"),
+                text("labelName"), text("initialContours"), text("structure") };
     }
+  }
+  catch (const IOError &)
+  {
+    throw;
   }
   catch (const std::exception & error)
   {

@@ -25,12 +25,12 @@ CropToBone(const CTImage *             ct,
   {
     return input;
   }
-  VerifySameGrid(ct, labels);
-  VerifyOneBone(labels, plan.label);
-  const BoneExtent          extent = MeasureLabel(labels, plan.label);
+  const LabelImage::Pointer onGrid = PutOnGrid(labels, ct);
+  VerifyOneBone(onGrid, plan.label);
+  const BoneExtent          extent = MeasureLabel(onGrid, plan.label);
   const CTImage::RegionType region = GrowRegion(ct, extent.region, plan.cropMargin);
   input.ct = Crop(ct, region);
-  input.labels = Crop(labels, region);
+  input.labels = Crop(onGrid, region);
   input.mask = MaskOfLabel(input.labels, plan.label);
   input.surface = extent.surface;
   return input;

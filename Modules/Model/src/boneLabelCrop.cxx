@@ -7,9 +7,12 @@
 
 #include <itkImageRegionConstIteratorWithIndex.h>
 #include <itkImageRegionIterator.h>
+#include <itkNearestNeighborInterpolateImageFunction.h>
 #include <itkRegionOfInterestImageFilter.h>
+#include <itkResampleImageFilter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -37,20 +40,77 @@ CropImage(const TImage * image, const CTImage::RegionType & region)
   return output;
 }
 
-/** "1 (8000 voxels, 8.0 cm^3), 2 (...)": the first twenty. */
-std::string
-ListLabels(const std::vector<LabelCount> & labels)
+using Corner = itk::Point<double, 3>;
+
+/** The centres of the eight corner voxels. */
+std::array<Corner, 8>
+Corners(const itk::ImageBase<3> * image)
 {
-  constexpr std::size_t most = 20;
-  std::ostringstream    list;
-  list << std::fixed << std::setprecision(1);
-  for (std::size_t i = 0; i < std::min(most, labels.size()); ++i)
+  const auto            region = image->GetLargestPossibleRegion();
+  std::array<Corner, 8> corners;
+  for (unsigned int i = 0; i < 8; ++i)
   {
-    list << (i == 0 ? "" : ", ") << labels[i].value << " (" << labels[i].voxels << " voxels, "
-         << 1e-3 * labels[i].volume << " cm^3)";
+    CTImage::IndexType index = region.GetIndex();
+    for (unsigned int d = 0; d < 3; ++d)
+    {
+      index[d] += (i >> d & 1U) != 0 ? static_cast<itk::IndexValueType>(region.GetSize(d)) - 1 : 0;
+    }
+    image->TransformIndexToPhysicalPoint(index, corners[i]);
   }
-  list << (labels.size() > most ? ", ..." : "");
-  return list.str();
+  return corners;
+}
+
+double
+LargestCornerDistance(const itk::ImageBase<3> * a, const itk::ImageBase<3> * b)
+{
+  const auto first = Corners(a);
+  const auto second = Corners(b);
+  double     largest = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+  {
+    largest = std::max(largest, first[i].EuclideanDistanceTo(second[i]));
+  }
+  return largest;
+}
+
+double
+SmallestEdge(const itk::ImageBase<3> * image)
+{
+  return std::min({ image->GetSpacing()[0], image->GetSpacing()[1], image->GetSpacing()[2] });
+}
+
+std::string
+SizeText(const CTImage::SizeType & size)
+{
+  std::ostringstream text;
+  text << size[0] << " x " << size[1] << " x " << size[2];
+  return text.str();
+}
+
+/** "lies at x -100 to 50, y 0 to 30, z -900 to -700 mm" (LPS). */
+std::string
+PlaceText(const itk::ImageBase<3> * image)
+{
+  const auto         corners = Corners(image);
+  std::ostringstream text;
+  text << "lies at";
+  for (unsigned int d = 0; d < 3; ++d)
+  {
+    const auto less = [d](const Corner & a, const Corner & b) { return a[d] < b[d]; };
+    const auto [least, most] = std::minmax_element(corners.begin(), corners.end(), less);
+    text << (d == 0 ? " " : ", ") << "xyz"[d] << ' ' << (*least)[d] << " to " << (*most)[d];
+  }
+  text << " mm";
+  return text.str();
+}
+
+void
+CopyStatement(const LabelImage * from, LabelImage * to)
+{
+  if (StatesOneBone(*from))
+  {
+    StateOneBone(*to);
+  }
 }
 } // namespace
 
@@ -70,10 +130,29 @@ CountLabels(const LabelImage * labels)
     const std::size_t voxels = counts[static_cast<std::size_t>(value + offset)];
     if (value != 0 && voxels > 0)
     {
-      result.push_back({ value, voxels, static_cast<double>(voxels) * spacing[0] * spacing[1] * spacing[2] });
+      result.push_back({ value, voxels, static_cast<double>(voxels) * spacing[0] * spacing[1] * spacing[2], "" });
     }
   }
   return result;
+}
+
+std::string
+ListLabels(const std::vector<LabelCount> & labels)
+{
+  constexpr std::size_t most = 20;
+  std::ostringstream    list;
+  list << std::fixed << std::setprecision(1);
+  for (std::size_t i = 0; i < std::min(most, labels.size()); ++i)
+  {
+    list << (i == 0 ? "" : ", ") << labels[i].value;
+    if (!labels[i].name.empty())
+    {
+      list << " '" << labels[i].name << '\'';
+    }
+    list << " (" << labels[i].voxels << " voxels, " << 1e-3 * labels[i].volume << " cm^3)";
+  }
+  list << (labels.size() > most ? ", ..." : "");
+  return list.str();
 }
 
 void
@@ -91,36 +170,68 @@ VerifyOneBone(const LabelImage * labels, int label)
   }
 }
 
-void
-VerifySameGrid(const CTImage * ct, const LabelImage * labels)
+bool
+IsSameGrid(const itk::ImageBase<3> * a, const itk::ImageBase<3> * b)
+{
+  return a->GetLargestPossibleRegion() == b->GetLargestPossibleRegion() &&
+         LargestCornerDistance(a, b) < GridTolerance * SmallestEdge(a);
+}
+
+LabelImage::Pointer
+PutOnGrid(const LabelImage * labels, const itk::ImageBase<3> * ct)
 {
   const auto size = ct->GetLargestPossibleRegion().GetSize();
   const auto other = labels->GetLargestPossibleRegion().GetSize();
   if (size != other)
   {
-    itkGenericExceptionMacro("The label map has " << other[0] << " x " << other[1] << " x " << other[2]
-                                                  << " voxels, the CT " << size[0] << " x " << size[1] << " x "
-                                                  << size[2] << ": resample it to the CT's grid.");
+    itkGenericExceptionMacro("The label map has " << SizeText(other) << " voxels, the CT " << SizeText(size)
+                                                  << ": resample it to the CT's grid.");
   }
-  // Corners at the same place mean the same origin, spacing and direction.
-  for (int corner = 0; corner < 4; ++corner)
+  if (!IsSameGrid(ct, labels))
   {
-    CTImage::IndexType index = ct->GetLargestPossibleRegion().GetIndex();
-    if (corner > 0)
+    itkGenericExceptionMacro("The label map does not lie where the CT lies: a corner is "
+                             << LargestCornerDistance(ct, labels) << " mm off. Resample it to the CT's grid.");
+  }
+  auto image = LabelImage::New();
+  image->Graft(labels);
+  image->CopyInformation(ct);
+  CopyStatement(labels, image);
+  return image;
+}
+
+LabelImage::Pointer
+ResampleToGrid(const LabelImage * labels, const itk::ImageBase<3> * ct)
+{
+  for (const auto & corner : Corners(ct))
+  {
+    const auto index = labels->TransformPhysicalPointToContinuousIndex<double>(corner);
+    for (unsigned int d = 0; d < 3; ++d)
     {
-      index[corner - 1] += static_cast<itk::IndexValueType>(size[corner - 1]) - 1;
-    }
-    CTImage::PointType a;
-    CTImage::PointType b;
-    ct->TransformIndexToPhysicalPoint(index, a);
-    labels->TransformIndexToPhysicalPoint(index, b);
-    const double voxel = std::min({ ct->GetSpacing()[0], ct->GetSpacing()[1], ct->GetSpacing()[2] });
-    if (!(a.EuclideanDistanceTo(b) < 1e-2 * voxel))
-    {
-      itkGenericExceptionMacro("The label map does not lie where the CT lies: a corner is "
-                               << a.EuclideanDistanceTo(b) << " mm off. Resample it to the CT's grid.");
+      const auto   region = labels->GetLargestPossibleRegion();
+      const double first = static_cast<double>(region.GetIndex(d)) - 0.5;
+      if (!(index[d] >= first - GridTolerance &&
+            index[d] <= first + static_cast<double>(region.GetSize(d)) + GridTolerance))
+      {
+        itkGenericExceptionMacro("The label map does not cover the CT: it "
+                                 << PlaceText(labels) << ", where the CT " << PlaceText(ct)
+                                 << ". Crop the CT to what the label map covers, or give the label map of this CT");
+      }
     }
   }
+  using Nearest = itk::NearestNeighborInterpolateImageFunction<LabelImage>;
+  auto filter = itk::ResampleImageFilter<LabelImage, LabelImage>::New();
+  filter->SetInput(labels);
+  filter->SetInterpolator(Nearest::New());
+  filter->SetSize(ct->GetLargestPossibleRegion().GetSize());
+  filter->SetOutputStartIndex(ct->GetLargestPossibleRegion().GetIndex());
+  filter->SetOutputOrigin(ct->GetOrigin());
+  filter->SetOutputSpacing(ct->GetSpacing());
+  filter->SetOutputDirection(ct->GetDirection());
+  filter->Update();
+  LabelImage::Pointer image = filter->GetOutput();
+  image->DisconnectPipeline();
+  CopyStatement(labels, image);
+  return image;
 }
 
 BoneExtent
@@ -203,10 +314,7 @@ LabelImage::Pointer
 Crop(const LabelImage * image, const CTImage::RegionType & region)
 {
   const auto cropped = CropImage(image, region);
-  if (StatesOneBone(*image))
-  {
-    StateOneBone(*cropped);
-  }
+  CopyStatement(image, cropped);
   return cropped;
 }
 

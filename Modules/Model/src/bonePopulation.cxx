@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 
 namespace bone
 {
@@ -37,7 +38,67 @@ IsMesh(const std::string & path)
 {
   return fs::path(path).extension() == ".vtu";
 }
+
+/** The last `count` parts of a path, without extension and with '_' between them. */
+std::string
+LastParts(const fs::path & path, int count)
+{
+  std::string name = path.stem().string();
+  fs::path    folder = fs::absolute(path).lexically_normal().parent_path();
+  for (; count > 1 && folder.has_filename(); --count, folder = folder.parent_path())
+  {
+    name = folder.filename().string() + '_' + name;
+  }
+  return name;
+}
+
+/** By their files; where these do not tell them apart, as those of builds, by the folders too. */
+void
+NameSubjects(std::vector<SubjectFiles> & subjects)
+{
+  constexpr int         most = 4;
+  std::set<std::string> names;
+  std::set<std::string> files;
+  for (int parts = 1; parts <= most && names.size() < subjects.size(); ++parts)
+  {
+    names.clear();
+    for (SubjectFiles & subject : subjects)
+    {
+      subject.name = LastParts(subject.shape, parts);
+      names.insert(subject.name);
+      files.insert(LastParts(subject.shape, 1));
+    }
+  }
+  const std::string tail = '_' + *files.begin();
+  for (SubjectFiles & subject : subjects)
+  {
+    if (files.size() == 1 && subject.name.size() > tail.size())
+    {
+      subject.name.resize(subject.name.size() - tail.size()); // the same for all
+    }
+  }
+}
 } // namespace
+
+void
+VerifySubjects(const std::vector<SubjectFiles> & subjects)
+{
+  for (const SubjectFiles & subject : subjects)
+  {
+    if (IsMesh(subject.shape))
+    {
+      ReadMeshArrays(subject.shape);
+    }
+    else
+    {
+      ReadTriangleSurface(subject.shape);
+    }
+    if (!subject.ct.empty())
+    {
+      ReadCT(subject.ct);
+    }
+  }
+}
 
 std::vector<SubjectFiles>
 ReadSubjectList(const std::string & path)
@@ -60,9 +121,9 @@ ReadSubjectList(const std::string & path)
     subject.shape = Beside(fs::path(path).parent_path(), Trim(line.substr(0, comma)));
     subject.ct =
       comma == std::string::npos ? std::string() : Beside(fs::path(path).parent_path(), Trim(line.substr(comma + 1)));
-    subject.name = fs::path(subject.shape).stem().string();
     subjects.push_back(subject);
   }
+  NameSubjects(subjects);
   if (subjects.size() < 2)
   {
     throw IOError(path, "the list must have two subjects or more, one a line");

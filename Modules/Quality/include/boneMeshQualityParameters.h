@@ -10,7 +10,7 @@ namespace bone
 {
 // clang-format off
 #define BONE_MESH_QUALITY_PARAMETERS(value, flag) \
-  value(int, label, Label, 0, ParameterRange::Any(), "", "label", \
+  value(int, label, Label, 0, ParameterRange::Any(), "", "", \
     "The bone's value in the label map; 0: every value but 0") \
   value(int, iterations, Iterations, 4, ParameterRange::AtLeast(0), "", "iterations", \
     "Smoothing iterations at the start") \

@@ -148,7 +148,7 @@ TakeKeyholesApart(std::vector<Vector3> contour)
 std::vector<Polyline>
 ReadStructure(const std::string & path, const std::string & name)
 {
-  RequireWholeDicomFile(path);
+  ReadWholeDicomFile(path);
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   gdcm::Reader reader;

@@ -30,6 +30,41 @@ BytesOfPixels(DcmDataset & data)
   data.findAndGetSint32(DCM_NumberOfFrames, frames);
   return bytes / 8.0 * frames;
 }
+
+std::string
+Text(DcmDataset & data, const DcmTagKey & key)
+{
+  OFString text;
+  data.findAndGetOFStringArray(key, text);
+  return text.c_str();
+}
+
+/** Whether the attribute has so many numbers, which are stored. */
+template <std::size_t VCount>
+bool
+Numbers(DcmDataset & data, const DcmTagKey & key, std::array<double, VCount> & numbers)
+{
+  bool all = true;
+  for (std::size_t i = 0; i < VCount; ++i)
+  {
+    all = all && data.findAndGetFloat64(key, numbers[i], static_cast<unsigned long>(i)).good();
+  }
+  return all;
+}
+
+void
+ReadPlace(DcmDataset & data, DicomHeader & header)
+{
+  std::array<double, 6> axes{};
+  header.placed =
+    Numbers(data, DCM_ImagePositionPatient, header.position) && Numbers(data, DCM_ImageOrientationPatient, axes);
+  for (std::size_t k = 0; k < 3; ++k)
+  {
+    const std::size_t i = (k + 1) % 3;
+    const std::size_t j = (k + 2) % 3;
+    header.normal[k] = axes[i] * axes[3 + j] - axes[j] * axes[3 + i];
+  }
+}
 } // namespace
 
 bool
@@ -42,8 +77,8 @@ IsDicomFile(const std::string & path)
   return stream.good() && std::string(mark, 4) == "DICM";
 }
 
-void
-RequireWholeDicomFile(const std::string & path)
+DicomHeader
+ReadWholeDicomFile(const std::string & path)
 {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   DcmFileFormat     file;
@@ -57,9 +92,29 @@ RequireWholeDicomFile(const std::string & path)
   DcmDataset & data = *file.getDataset();
   DcmElement * pixels = nullptr;
   const bool   plain = !DcmXfer(data.getOriginalXfer()).isEncapsulated();
-  if (plain && data.findAndGetElement(DCM_PixelData, pixels).good() && pixels->getLength() < BytesOfPixels(data))
+  DicomHeader  header;
+  header.image = data.findAndGetElement(DCM_PixelData, pixels).good();
+  if (plain && header.image && pixels->getLength() < BytesOfPixels(data))
   {
     throw IOError(path, "is a DICOM image whose pixels are not all there; copy it again from where it came");
   }
+  header.path = path;
+  header.series = Text(data, DCM_SeriesInstanceUID);
+  header.number = Text(data, DCM_SeriesNumber);
+  header.description = Text(data, DCM_SeriesDescription);
+  header.modality = Text(data, DCM_Modality);
+  header.instance = Text(data, DCM_SOPInstanceUID);
+  header.scout = Text(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
+  Uint16 rows = 0;
+  Uint16 columns = 0;
+  Sint32 frames = 1;
+  data.findAndGetUint16(DCM_Rows, rows);
+  data.findAndGetUint16(DCM_Columns, columns);
+  data.findAndGetSint32(DCM_NumberOfFrames, frames);
+  header.rows = rows;
+  header.columns = columns;
+  header.frames = frames;
+  ReadPlace(data, header);
+  return header;
 }
 } // namespace bone

@@ -1,144 +1,223 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneDicomFile.h"
-#include "boneImageFile.h"
-#include "boneRefuse.h"
+#include "boneDicomSeries.h"
 
-#include <itkGDCMImageIO.h>
-#include <itkGDCMSeriesFileNames.h>
-#include <itkImageSeriesReader.h>
-#include <itkMetaDataObject.h>
+#include "boneImageIO.h"
+#include "boneRefuse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
 
 namespace bone
 {
 namespace
 {
-using Reader = itk::ImageSeriesReader<CTImage>;
-// Not Eigen's: the headers included here bring an older Eigen of ITK's own.
-using Vector = itk::Vector<double, 3>;
+namespace fs = std::filesystem;
 
-// How far a slice may lie from its place on an even grid, as part of the spacing.
-constexpr double PositionTolerance = 0.05;
+/** Images at places nearer than this are at one place, mm. */
+constexpr double SamePlace = 1e-3;
 
-void
-RequireWholeDicomFiles(const std::string & folder)
+double
+Height(const DicomHeader & header)
 {
-  std::error_code error;
-  for (const auto & entry : std::filesystem::directory_iterator(folder, error))
+  return header.position[0] * header.normal[0] + header.position[1] * header.normal[1] +
+         header.position[2] * header.normal[2];
+}
+
+/** All images in the folder and the folders in it, in the order of their paths. */
+std::vector<DicomHeader>
+FindImages(const std::string & folder)
+{
+  std::set<std::string> paths;
+  std::error_code       error;
+  const auto            options = fs::directory_options::skip_permission_denied;
+  for (auto it = fs::recursive_directory_iterator(folder, options, error); it != fs::recursive_directory_iterator();
+       it.increment(error))
   {
-    if (entry.is_regular_file(error) && IsDicomFile(entry.path().string()))
+    if (it->is_regular_file(error) && IsDicomFile(it->path().string()))
     {
-      RequireWholeDicomFile(entry.path().string());
+      paths.insert(it->path().string());
     }
   }
-}
-
-std::vector<std::string>
-SeriesFiles(const std::string & folder)
-{
-  RequireWholeDicomFiles(folder);
-  auto names = itk::GDCMSeriesFileNames::New();
-  names->SetUseSeriesDetails(true);
-  names->SetDirectory(folder);
-  const auto series = names->GetSeriesUIDs();
-  if (series.empty())
+  std::vector<DicomHeader> images;
+  for (const std::string & path : paths)
   {
-    throw IOError(folder, "is a folder without a DICOM series");
-  }
-  if (series.size() > 1)
-  {
-    throw IOError(folder, Say("holds ", series.size(), " DICOM series: put the one to read into a folder of its own"));
-  }
-  const auto files = names->GetFileNames(series.front());
-  if (files.size() < 2)
-  {
-    throw IOError(folder, "holds a DICOM series of one slice where a volume is needed");
-  }
-  return files;
-}
-
-// ImagePositionPatient of each file, in the order read.
-std::vector<Vector>
-SlicePositions(Reader * reader, const std::string & folder)
-{
-  std::vector<Vector> positions;
-  for (const auto * dictionary : *reader->GetMetaDataDictionaryArray())
-  {
-    std::string text;
-    itk::ExposeMetaData<std::string>(*dictionary, "0020|0032", text);
-    std::replace(text.begin(), text.end(), '\\', ' ');
-    std::istringstream stream(text);
-    Vector             position;
-    if (!(stream >> position[0] >> position[1] >> position[2]))
+    DicomHeader header = ReadWholeDicomFile(path);
+    if (header.image)
     {
-      throw IOError(folder, "is a DICOM series without slice positions (0020,0032)");
+      images.push_back(std::move(header));
     }
-    positions.push_back(position);
   }
-  return positions;
+  return images;
 }
 
-void
-RequireEvenSpacing(const std::vector<Vector> & positions, const CTImage * image, const std::string & folder)
+/** "1 scout", "3 scouts" */
+std::string
+Count(std::size_t count, const std::string & what)
 {
-  Vector normal;
-  for (int k = 0; k < 3; ++k)
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/** Takes what `passes` says out of the images, and tells of it. */
+template <typename TPredicate>
+void
+PassOver(std::vector<DicomHeader> & images,
+         const std::string &        what,
+         const TPredicate &         passes,
+         std::vector<std::string> & notes)
+{
+  const auto rest = std::stable_partition(images.begin(), images.end(), [&](const auto & i) { return !passes(i); });
+  const auto count = static_cast<std::size_t>(images.end() - rest);
+  if (count > 0)
   {
-    normal[k] = image->GetDirection()[k][2];
+    notes.push_back(Count(count, what) + " passed over, such as " + rest->path);
   }
-  const double length = (positions.back() - positions.front()) * normal;
-  const double step = length / static_cast<double>(positions.size() - 1);
-  double       worst = 0, drift = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i)
+  images.erase(rest, images.end());
+}
+
+std::vector<DicomSeries>
+GroupBySeries(std::vector<DicomHeader> images)
+{
+  const auto normal = [](const DicomHeader & image, int k) { return std::lround(1e3 * image.normal[k]); };
+  using Key = std::tuple<std::string, std::string, int, int, long, long, long>;
+  std::map<Key, DicomSeries> series;
+  for (DicomHeader & image : images)
   {
-    const Vector offset = positions[i] - positions.front();
-    const double height = offset * normal;
-    worst = std::max(worst, std::abs(height - static_cast<double>(i) * step));
-    drift = std::max(drift, (offset - normal * height).GetNorm());
+    const Key key{ image.number,     image.series,     image.rows,      image.columns,
+                   normal(image, 0), normal(image, 1), normal(image, 2) };
+    series[key].push_back(std::move(image));
   }
-  const double allowed = PositionTolerance * std::abs(step);
-  if (!(worst <= allowed))
+  std::vector<DicomSeries> list;
+  for (auto & entry : series)
+  {
+    auto & slices = entry.second;
+    std::stable_sort(
+      slices.begin(), slices.end(), [](const auto & a, const auto & b) { return Height(a) < Height(b); });
+    list.push_back(std::move(slices));
+  }
+  return list;
+}
+
+bool
+IsVolume(const DicomSeries & series)
+{
+  return series.size() > 1 || series.front().frames > 1;
+}
+
+std::string
+Describe(const DicomSeries & series)
+{
+  const DicomHeader & first = series.front();
+  const bool          frames = series.size() == 1 && first.frames > 1;
+  std::string         name = first.number.empty() ? first.series : "number " + first.number;
+  name += " (" + first.modality + (first.description.empty() ? "" : ", '" + first.description + "'") + ", ";
+  return name + Count(frames ? static_cast<std::size_t>(first.frames) : series.size(), "slice") +
+         Say(" of ", first.columns, " x ", first.rows, ")");
+}
+
+std::string
+List(const std::vector<DicomSeries> & series)
+{
+  constexpr std::size_t most = 20;
+  std::string           text;
+  for (std::size_t i = 0; i < std::min(most, series.size()); ++i)
+  {
+    text += (i > 0 ? ", " : "") + Describe(series[i]);
+  }
+  return text + (series.size() > most ? ", ..." : "");
+}
+
+/** Those that `wanted` names, or that are volumes where it is empty; those that are not are told of. */
+std::vector<DicomSeries>
+Choose(std::vector<DicomSeries>   all,
+       const std::string &        folder,
+       const std::string &        wanted,
+       std::vector<std::string> & notes)
+{
+  const auto named = [&wanted](const DicomSeries & series) {
+    const DicomHeader & first = series.front();
+    return first.number == wanted || first.series == wanted || first.description == wanted;
+  };
+  std::vector<DicomSeries> chosen;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const DicomSeries & series) {
+    return wanted.empty() || named(series);
+  });
+  if (chosen.empty())
+  {
+    throw IOError(folder, "has no DICOM series '" + wanted + "'; it has " + List(all));
+  }
+  const auto singles = std::stable_partition(chosen.begin(), chosen.end(), IsVolume);
+  if (singles == chosen.begin())
   {
     throw IOError(folder,
-                  Say("is a DICOM series whose slices are not evenly spaced (up to ",
-                      worst,
-                      " mm off a spacing of ",
-                      std::abs(step),
-                      " mm): is one missing?"));
+                  chosen.size() == 1 ? "holds a DICOM series of one slice where a volume is needed"
+                                     : "holds single DICOM images where a volume is needed: " + List(chosen));
   }
-  if (!(drift <= std::max(allowed, 0.5 * image->GetSpacing()[0])))
+  for (auto single = singles; single != chosen.end(); ++single)
   {
-    throw IOError(folder,
-                  Say("is a DICOM series whose slices shift sideways by ",
-                      drift,
-                      " mm (tilted gantry): resample it to an orthogonal grid"));
+    notes.push_back("a single image passed over, " + single->front().path);
+  }
+  chosen.erase(singles, chosen.end());
+  return chosen;
+}
+
+/** Takes out files that are copies of another, and refuses different images at one place. */
+void
+DropCopies(DicomSeries & series, const std::string & folder, std::vector<std::string> & notes)
+{
+  std::set<std::string> instances;
+  PassOver(
+    series,
+    "copied file",
+    [&instances](const DicomHeader & image) {
+      return !image.instance.empty() && !instances.insert(image.instance).second;
+    },
+    notes);
+  for (std::size_t i = 1; i < series.size(); ++i)
+  {
+    const double between = Height(series[i]) - Height(series[i - 1]);
+    if (between < SamePlace)
+    {
+      throw IOError(
+        folder,
+        "has two DICOM images at one place, " + series[i - 1].path + " and " + series[i].path +
+          ": is one a duplicate, or are there several phases? Put the slices of one volume into a folder of "
+          "their own");
+    }
   }
 }
 } // namespace
 
-CTImage::Pointer
-ReadDicomSeries(const std::string & folder)
+DicomSeries
+FindDicomSeries(const std::string & folder, const std::string & wanted, std::vector<std::string> & notes)
 {
-  const auto files = SeriesFiles(folder);
-  auto       reader = Reader::New();
-  reader->SetImageIO(itk::GDCMImageIO::New());
-  reader->SetFileNames(files);
-  try
+  std::vector<DicomHeader> images = FindImages(folder);
+  if (images.empty())
   {
-    reader->Update();
+    throw IOError(folder, "is a folder without a DICOM series");
   }
-  catch (const itk::ExceptionObject & error)
+  PassOver(
+    images, "scout", [](const DicomHeader & image) { return image.scout; }, notes);
+  PassOver(
+    images, "unplaced image", [](const DicomHeader & image) { return !image.placed && image.frames <= 1; }, notes);
+  if (images.empty())
   {
-    throw IOError(folder, "is no readable DICOM series: " + ErrorLine(error));
+    throw IOError(folder,
+                  "holds no DICOM slice with a position (0020,0032) and an orientation (0020,0037) that is no scout");
   }
-  CTImage::Pointer image = reader->GetOutput();
-  RequireEvenSpacing(SlicePositions(reader, folder), image, folder);
-  image->DisconnectPipeline();
-  return image;
+  std::vector<DicomSeries> chosen = Choose(GroupBySeries(std::move(images)), folder, wanted, notes);
+  if (chosen.size() > 1)
+  {
+    throw SeveralSeries(
+      folder,
+      Say("holds ", chosen.size(), " DICOM series ", wanted.empty() ? "" : "of that name ", "- ", List(chosen)));
+  }
+  DropCopies(chosen.front(), folder, notes);
+  return chosen.front();
 }
 } // namespace bone

@@ -3,10 +3,9 @@
  *=========================================================================*/
 #include "boneImageCheck.h"
 
+#include "boneGzFile.h"
 #include "boneImageHeader.h"
 #include "boneVtkFile.h"
-
-#include <itk_zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -23,20 +21,6 @@ namespace bone
 namespace
 {
 namespace fs = std::filesystem;
-
-// A file that zlib reads whether it is compressed or not.
-using GzFile = std::unique_ptr<std::remove_pointer_t<gzFile>, int (*)(gzFile)>;
-
-GzFile
-OpenGz(const std::string & path)
-{
-  GzFile file(gzopen(path.c_str(), "rb"), gzclose);
-  if (file)
-  {
-    gzbuffer(file.get(), 1u << 18);
-  }
-  return file;
-}
 
 // What is needed of a NIfTI-1 header (348 bytes; offsets as in nifti1.h).
 struct NiftiHeader

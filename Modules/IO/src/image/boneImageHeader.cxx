@@ -111,6 +111,22 @@ RequireSensibleNifti(const std::string & path)
     require("position (sform)", 280, 12);
   }
 }
+/** The fields ("name: value"), or the notes ("name:=value"). */
+std::map<std::string, std::string>
+ReadNrrdLines(std::istream & stream, bool notes)
+{
+  std::map<std::string, std::string> lines;
+  std::string                        line;
+  while (GetField(stream, line, lines.size()) && !Trim(line).empty())
+  {
+    const auto colon = line.find(':');
+    if (colon != std::string::npos && line[0] != '#' && (line.compare(colon, 2, ":=") == 0) == notes)
+    {
+      lines[Trim(line.substr(0, colon))] = Trim(line.substr(colon + (notes ? 2 : 1)));
+    }
+  }
+  return lines;
+}
 } // namespace
 
 std::string
@@ -137,17 +153,13 @@ ReadMetaHeader(std::istream & stream)
 std::map<std::string, std::string>
 ReadNrrdHeader(std::istream & stream)
 {
-  std::map<std::string, std::string> fields;
-  std::string                        line;
-  while (GetField(stream, line, fields.size()) && !Trim(line).empty())
-  {
-    const auto colon = line.find(':');
-    if (colon != std::string::npos && line[0] != '#' && line.compare(colon, 2, ":=") != 0)
-    {
-      fields[Trim(line.substr(0, colon))] = Trim(line.substr(colon + 1));
-    }
-  }
-  return fields;
+  return ReadNrrdLines(stream, false);
+}
+
+std::map<std::string, std::string>
+ReadNrrdNotes(std::istream & stream)
+{
+  return ReadNrrdLines(stream, true);
 }
 
 void

@@ -41,6 +41,10 @@ ReadMetaHeader(std::istream & stream);
 std::map<std::string, std::string>
 ReadNrrdHeader(std::istream & stream);
 
+/** The notes in an NRRD's header ("key:=value"), up to the empty line before the data. */
+std::map<std::string, std::string>
+ReadNrrdNotes(std::istream & stream);
+
 /** Throws IOError where the header of a NIfTI, MetaImage or NRRD file has numbers that no image has: ITK's readers run
  * for ever, use up the memory or end the process with some of them. Other files are passed over. */
 void

@@ -5,7 +5,6 @@
 #include "boneImageCheck.h"
 #include "boneImageFile.h"
 #include "boneImageHeader.h"
-#include "boneLabelValue.h"
 #include "boneParameters.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
@@ -17,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 namespace bone
 {
@@ -40,7 +38,7 @@ OpenImage(const std::string & path)
   RequireReadableFile(path);
   if (IsDicomFile(path))
   {
-    RequireWholeDicomFile(path);
+    ReadWholeDicomFile(path);
   }
   RequireSensibleHeader(path);
   auto io = itk::ImageIOFactory::CreateImageIO(path.c_str(), itk::IOFileModeEnum::ReadMode);
@@ -64,10 +62,6 @@ OpenImage(const std::string & path)
     }
     throw IOError(path, "is no readable image: " + text);
   }
-  if (io->GetNumberOfComponents() != 1)
-  {
-    throw IOError(path, Say("has ", io->GetNumberOfComponents(), " components per voxel where one value is needed"));
-  }
   for (unsigned int d = 3; d < io->GetNumberOfDimensions(); ++d)
   {
     if (io->GetDimensions(d) > 1)
@@ -77,6 +71,15 @@ OpenImage(const std::string & path)
     }
   }
   return io;
+}
+
+void
+RequireOneComponent(const std::string & path, const itk::ImageIOBase * io)
+{
+  if (io->GetNumberOfComponents() != 1)
+  {
+    throw IOError(path, Say("has ", io->GetNumberOfComponents(), " components per voxel where one value is needed"));
+  }
 }
 
 std::string
@@ -108,29 +111,51 @@ RequireWholeFile(const std::string & path, const itk::ImageIOBase * io)
   }
 }
 
-CTImage::Pointer
+template <typename TImage>
+typename TImage::Pointer
 LoadImage(const std::string & path, itk::ImageIOBase * io)
 {
   RequireWholeFile(path, io);
-  auto reader = itk::ImageFileReader<CTImage>::New();
+  auto reader = itk::ImageFileReader<TImage>::New();
   reader->SetImageIO(io);
   reader->SetFileName(path);
   try
   {
     reader->Update();
   }
+  catch (const itk::MemoryAllocationError &)
+  {
+    throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
+  }
   catch (const itk::ExceptionObject & error)
   {
     throw IOError(path, "is no readable image: " + ErrorLine(error));
   }
-  CTImage::Pointer image = reader->GetOutput();
+  typename TImage::Pointer image = reader->GetOutput();
   image->DisconnectPipeline();
   return image;
 }
 
-/** A grid in millimetres, near enough to the scanner's origin. */
 void
-RequireSensibleGrid(const std::string & path, const CTImage * image)
+RequireVolume(const std::string & path, const itk::ImageIOBase * io)
+{
+  bool volume = io->GetNumberOfDimensions() >= 3;
+  for (unsigned int d = 0; d < 3 && volume; ++d)
+  {
+    volume = io->GetDimensions(d) > 1;
+  }
+  if (!volume)
+  {
+    throw IOError(path,
+                  Say("is an image of one slice (",
+                      SizeText(io),
+                      ") where a volume is needed; for a DICOM series name its folder"));
+  }
+}
+} // namespace
+
+void
+RequireSensibleGrid(const CTImage * image, const std::string & path)
 {
   const auto length = ParameterRange::Length();
   for (unsigned int d = 0; d < 3; ++d)
@@ -159,28 +184,31 @@ RequireSensibleGrid(const std::string & path, const CTImage * image)
 }
 
 CTImage::Pointer
-ReadVolume(const std::string & path)
+ReadVolume(const std::string & path, const std::string & series, std::vector<std::string> & notes)
 {
   const QuietItk  quiet;
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
   {
-    return ReadDicomSeries(path);
+    return ReadDicomFolder(path, series, notes);
+  }
+  if (!series.empty())
+  {
+    throw IOError(path, "is no folder, of whose DICOM series one could be chosen");
   }
   const auto io = OpenImage(path);
-  bool       volume = io->GetNumberOfDimensions() >= 3;
-  for (unsigned int d = 0; d < 3 && volume; ++d)
-  {
-    volume = io->GetDimensions(d) > 1;
-  }
-  if (!volume)
-  {
-    throw IOError(path,
-                  Say("is an image of one slice (",
-                      SizeText(io),
-                      ") where a volume is needed; for a DICOM series name its folder"));
-  }
-  return LoadImage(path, io);
+  RequireOneComponent(path, io);
+  RequireVolume(path, io);
+  return LoadImage<CTImage>(path, io);
+}
+
+itk::VectorImage<float, 3>::Pointer
+ReadComponents(const std::string & path)
+{
+  const QuietItk quiet;
+  const auto     io = OpenImage(path);
+  RequireVolume(path, io);
+  return io->GetNumberOfComponents() == 1 ? nullptr : LoadImage<itk::VectorImage<float, 3>>(path, io);
 }
 
 void
@@ -200,52 +228,15 @@ RequireFinite(const CTImage * image, const std::string & path)
     throw IOError(path, NotFiniteText(count, first));
   }
 }
-} // namespace
 
 CTImage::Pointer
-ReadCT(const std::string & path)
+ReadCT(const std::string & path, const std::string & series, std::vector<std::string> * notes)
 {
-  const auto image = ReadVolume(path);
+  std::vector<std::string> unread;
+  const auto               image = ReadVolume(path, series, notes == nullptr ? unread : *notes);
   RequireFinite(image, path);
-  RequireSensibleGrid(path, image);
+  RequireSensibleGrid(image, path);
   return image;
-}
-
-LabelImage::Pointer
-ReadLabels(const std::string & path)
-{
-  using Limits = std::numeric_limits<LabelImage::PixelType>;
-  const auto values = ReadVolume(path);
-  RequireFinite(values, path);
-  RequireSensibleGrid(path, values);
-  auto labels = LabelImage::New();
-  labels->CopyInformation(values);
-  labels->SetRegions(values->GetBufferedRegion());
-  labels->Allocate();
-  LabelImage::PixelType *                         label = labels->GetBufferPointer();
-  itk::ImageRegionConstIteratorWithIndex<CTImage> it(values, values->GetBufferedRegion());
-  for (; !it.IsAtEnd(); ++it, ++label)
-  {
-    const float value = it.Get();
-    if (!(value >= Limits::lowest() && value <= Limits::max()) || value != std::floor(value))
-    {
-      throw IOError(path,
-                    Say("is no label map: its value at ",
-                        it.GetIndex(),
-                        " is ",
-                        value,
-                        ", no whole number from ",
-                        Limits::lowest(),
-                        " to ",
-                        Limits::max()));
-    }
-    *label = static_cast<LabelImage::PixelType>(value);
-  }
-  if (StatesOneBone(*values))
-  {
-    StateOneBone(*labels);
-  }
-  return labels;
 }
 
 CTImage::Pointer
@@ -257,7 +248,8 @@ ReadRadiograph(const std::string & path)
   {
     throw IOError(path, Say("is no radiograph: it is ", io->GetDimensions(2), " pixels thick (", SizeText(io), ")"));
   }
-  const auto image = LoadImage(path, io);
+  RequireOneComponent(path, io);
+  const auto image = LoadImage<CTImage>(path, io);
   RequireFinite(image, path);
   return image;
 }

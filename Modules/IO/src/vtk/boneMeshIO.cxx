@@ -5,6 +5,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneConversions.h"
+#include "boneFileName.h"
 #include "boneMeshValidator.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
@@ -16,6 +17,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <fstream>
 
 namespace bone
 {
@@ -149,6 +151,19 @@ ReadDensityMesh(const std::string & path)
   return mesh;
 }
 
+namespace
+{
+/** 3D Slicer says in the comment at the start of .stl and .ply files which of the two patient spaces they are in. */
+bool
+IsInRas(const std::string & path)
+{
+  std::ifstream stream(path, std::ios::binary);
+  std::string   start(1000, '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return !HasExtension(path, ".vtp") && start.find("SPACE=RAS") != std::string::npos;
+}
+} // namespace
+
 TriangleSurface
 ReadTriangleSurface(const std::string & path)
 {
@@ -158,6 +173,11 @@ ReadTriangleSurface(const std::string & path)
     RequireIdsInRange(polygons);
     TriangleSurface surface = ToTriangles(polygons);
     RequireClosed(surface);
+    const double sign = IsInRas(path) ? -1.0 : 1.0;
+    for (Vector3 & point : surface.points)
+    {
+      point.head<2>() *= sign;
+    }
     if (EnclosedVolume(surface) < 0)
     {
       for (auto & triangle : surface.triangles)

@@ -13,7 +13,7 @@
 
 namespace bone
 {
-/** The JSON document in a file. Throws IOError where there is none. */
+/** The JSON document in a file. Throws IOError where there is none, or it is nested more than a hundred levels deep. */
 nlohmann::json
 ReadJsonFile(const std::string & path);
 
