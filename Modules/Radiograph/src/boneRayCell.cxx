@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bone
 {
@@ -50,7 +51,7 @@ ColumnRun::Keep(double constant, double perColumn)
   }
   else if (!(constant >= 0))
   {
-    last = first - 1;
+    last = -std::numeric_limits<double>::infinity(); // and stays there, wherever `first` is
   }
 }
 } // namespace bone

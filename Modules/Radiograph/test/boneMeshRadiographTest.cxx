@@ -6,6 +6,7 @@
 #include "boneMeshWalk.h"
 #include "boneProjectionModel.h"
 #include "boneRadiographTestMeshes.h"
+#include "boneRayCell.h"
 #include "boneRayFrame.h"
 
 #include <Eigen/Geometry>
@@ -485,6 +486,36 @@ TEST(MeshRadiograph, DoesNotDependOnTheOrderOfWork)
   });
   EXPECT_EQ(alone, projected);
   EXPECT_EQ(walkedAlone, walked);
+}
+
+TEST(ColumnRun, StaysEmptyWhateverIsKept)
+{
+  for (const bool first : { true, false })
+  {
+    ColumnRun run{ 0.0, 19.0 };
+    run.Keep(first ? -1.0 : -100.0, first ? 0.0 : 1.0); // no column, or those from 100 on
+    run.Keep(first ? -100.0 : -1.0, first ? 1.0 : 0.0);
+    EXPECT_LT(run.last, 0.0);
+  }
+}
+
+TEST(MeshRadiograph, ADetectorBesideTheParallelBeamOfTheMeshSeesNothing)
+{
+  auto mesh = Box({ { 4, 4, 4 } }, 0.0);
+  test::SetConstant(mesh, 1);
+  View view;
+  view.parallel = true;
+  view.direction = Vector3(0, -1, 0);
+  view.detectorU = Vector3::UnitX();
+  view.detectorV = Vector3::UnitZ();
+  view.size = { { 20, 50 } };
+  view.spacing = { 6, 6 };
+  view.detectorOrigin = Vector3(-44, 195, 87); // the mesh lies beyond it
+  EXPECT_EQ(Largest(Project(mesh, view)), 0);
+  EXPECT_EQ(Largest(Walk(mesh, view)), 0);
+  view.detectorOrigin = Vector3(-444, -195, -87); // and here to its right
+  EXPECT_EQ(Largest(Project(mesh, view)), 0);
+  EXPECT_EQ(Largest(Walk(mesh, view)), 0);
 }
 
 TEST(MeshRadiograph, WalkAndProjectionAgreeFromAnywhere)
