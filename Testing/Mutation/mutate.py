@@ -150,8 +150,7 @@ class Copy:
                 os.makedirs(os.path.dirname(target), exist_ok=True)
                 shutil.copyfile(source, target)
         code, text = run(["cmake", "-G", "Ninja", "-S", self.root, "-B", self.build, "-DCMAKE_BUILD_TYPE=Release",
-                          "-DCMAKE_CXX_FLAGS_RELEASE=-O1", "-DBONETK_UNITY_BUILD=OFF", "-DBONETK_BUILD_EXAMPLES=OFF",
-                          "-DBONETK_BUILD_APPS=OFF"], folder, 600)
+                          "-DCMAKE_CXX_FLAGS_RELEASE=-O1", "-DBONETK_UNITY_BUILD=OFF"], folder, 600)
         if code != 0:
             sys.exit(text)
 

@@ -12,7 +12,6 @@
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
-#include <vtkPLYReader.h>
 #include <vtkSTLReader.h>
 #include <vtkXMLParser.h>
 #include <vtkXMLPolyDataReader.h>
@@ -355,12 +354,6 @@ vtkSmartPointer<vtkPolyData>
 ReadVtpFile(const std::string & path)
 {
   return ReadXmlWith<vtkXMLPolyDataReader>(path, "VTK poly data (.vtp)");
-}
-
-vtkSmartPointer<vtkPolyData>
-ReadPlyFile(const std::string & path)
-{
-  return ReadSurfaceWith<vtkPLYReader>(path, "PLY");
 }
 
 vtkSmartPointer<vtkPolyData>

@@ -32,9 +32,11 @@ ReadVtuFile(const std::string & path);
 vtkSmartPointer<vtkPolyData>
 ReadVtpFile(const std::string & path);
 vtkSmartPointer<vtkPolyData>
-ReadPlyFile(const std::string & path);
-vtkSmartPointer<vtkPolyData>
 ReadStlFile(const std::string & path);
+
+/** Points and faces of a PLY file; other elements and properties are passed over. Throws itk::ExceptionObject. */
+vtkSmartPointer<vtkPolyData>
+ReadPlyFile(const std::string & path);
 
 /** The root element of an XML file, or null where it is none. */
 vtkSmartPointer<vtkXMLDataElement>
