@@ -2,4 +2,5 @@
 set(BONETK_ITK_COMPONENTS
     ITKCommon ITKIOImageBase ITKIONIFTI ITKIOMeta ITKIOPNG ITKIOGDCM ITKIONRRD ITKImageGrid ITKImageFunction
     ITKImageIntensity ITKImageFeature ITKSmoothing ITKThresholding ITKDistanceMap ITKConnectedComponents
-    ITKBinaryMathematicalMorphology ITKPath ITKTransform ITKGDCM)
+    ITKBinaryMathematicalMorphology ITKPath ITKTransform ITKGDCM ITKIOTransformBase ITKIOTransformInsightLegacy
+    ITKOptimizersv4)

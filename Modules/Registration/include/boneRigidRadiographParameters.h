@@ -30,6 +30,8 @@ namespace bone
     "Steps of the refinement at the most, at each resolution") \
   value(double, surfaceDeviation, SurfaceDeviation, 0.2, ParameterRange::LengthOrZero(), "mm", "surface-deviation", \
     "Standard deviation of how far the model's surface lies outside the bone's as a whole; goes into the covariance") \
+  value(double, cutLength, CutLength, 25.0, ParameterRange::LengthOrZero(), "mm", "cut-length", \
+    "Where the bone leaves the CT and the model ends in a flat cut, its density fades to nothing over this length") \
   value(int, seed, Seed, 1, ParameterRange::Between(0, 1e9), "", "seed", "Seed of the search's random numbers")
 // clang-format on
 

@@ -275,7 +275,7 @@ PatchGradientCorrelation::PatchGradientCorrelation(const RadiographView & target
   const PatchSums sums = data->Sum({ data->fixed });
   const auto      squares = sums.withFixed.row(0);
   const double    largest = squares.maxCoeff();
-  if (!(largest > 0.0) || !std::isfinite(largest))
+  if (!squares.allFinite() || !(largest > 0.0))
   {
     throw std::invalid_argument("the X-ray is constant or not finite where its pixels count");
   }

@@ -5,6 +5,7 @@
 
 #include "boneBernstein.h"
 #include "boneEvolutionStrategy.h"
+#include "boneFlatCut.h"
 #include "bonePatchGradientCorrelation.h"
 #include "boneRigidCost.h"
 
@@ -280,7 +281,7 @@ private:
   Judge(RigidRegistrationResult & result, const Execution & execution) const
   {
     constexpr double away = 8.0; // mm
-    constexpr double ofTrue = 0.35;
+    constexpr double ofTrue = 0.45;
     constexpr double ofWrong = 0.3;
     const RigidCost & cost = *m_Costs.back();
     std::array<double, 12> costs;
@@ -335,6 +336,16 @@ RegisterRigid(const std::vector<MeshArrays> &                          levels,
               const Execution &                                        execution,
               const std::function<void(const RigidPose &, double)> &   observe)
 {
-  return RigidSearch(levels, views, initial, parameters, observe).Run(execution);
+  const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
+  if (cuts.empty() || !(parameters.cutLength > 0.0))
+  {
+    return RigidSearch(levels, views, initial, parameters, observe).Run(execution);
+  }
+  std::vector<MeshArrays> faded = levels;
+  for (MeshArrays & level : faded)
+  {
+    FadeToCuts(level, cuts, parameters.cutLength);
+  }
+  return RigidSearch(faded, views, initial, parameters, observe).Run(execution);
 }
 } // namespace bone
