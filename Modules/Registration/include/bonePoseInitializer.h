@@ -21,10 +21,11 @@ namespace bone
  * view or several.
  *
  * The pose is sought by random samples (RANSAC, Fischler and Bolles 1981) of four pairs each, or by all samples where
- * they are few. A sample's poses are the minima of the distance of its points to their rays, from 24 rotations that
- * cover all (the object-space error of Lu, Hager and Mjolsness 2000, for the rays of several views). The samples' poses
- * are compared by the squared distances of all pairs on the detector, each counted up to InlierDistance. The best ones
- * are refined by Levenberg-Marquardt with Tukey's weights, which are 0 from InlierDistance on.
+ * they are few, until one without outliers is all but sure to be among them. A sample's poses are the minima of the
+ * distance of its points to their rays, from 24 rotations that cover all (the object-space error of Lu, Hager and
+ * Mjolsness 2000, for the rays of several views). The samples' poses are compared by the squared distances of all pairs
+ * on the detector, each counted up to InlierDistance. The best ones are refined by Levenberg-Marquardt with Tukey's
+ * weights, which are 0 from InlierDistance on.
  * \{ */
 
 /** A point of the model and where it appears. */
@@ -48,7 +49,7 @@ MatchLandmarks(const std::vector<Landmark> & model, const std::vector<std::vecto
   value(double, landmarkDeviation, LandmarkDeviation, 1.0, ParameterRange::Length(), "mm at the detector", \
     "landmark-deviation", "Standard deviation of a landmark's place, along columns and along rows") \
   value(int, samples, Samples, 300, ParameterRange::Between(1, 100000), "", "landmark-samples", \
-    "Samples of four landmarks that are tried") \
+    "Most samples of four landmarks that are tried") \
   value(std::uint64_t, seed, Seed, 1, ParameterRange::Any(), "", "", "Seed of the samples")
 // clang-format on
 

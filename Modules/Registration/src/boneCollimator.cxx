@@ -20,11 +20,13 @@ constexpr double LeastDrop = 0.15;
 constexpr double ShadowVariation = 0.3;
 /** Pixels to either side of a border between which the exposure drops. */
 constexpr double HalfDrop = 3.0;
+/** Pixels by which a straight part of the hull may leave its chord. */
+constexpr double Straightness = 0.7;
 /** Shares: of an edge's samples that drop, of bright pixels in the shadow, of an edge's length in the shorter side, of
  * a bright patch in all that is bright. */
 constexpr double DroppingShare = 0.6;
 constexpr double BrightShare = 0.02;
-constexpr double LeastLength = 0.15;
+constexpr double LeastLength = 0.2;
 constexpr double LeastPatch = 0.02;
 
 struct SmallImage
@@ -187,7 +189,7 @@ HullOf(const SmallImage & image, const std::vector<bool> & bright)
   return hull;
 }
 
-/** Vertices i to j of the hull, in its order, which lie within a pixel of their chord. */
+/** Edges of the hull, one after another, whose vertices lie near their chord. */
 struct Chord
 {
   std::size_t first;
@@ -211,7 +213,7 @@ FindChords(const std::vector<Vector2> & hull, double leastLength)
       bool            straight = true;
       for (std::size_t k = 1; k < edges && straight; ++k)
       {
-        straight = std::abs(Cross(along, hull[(i + k) % n] - p)) <= length;
+        straight = std::abs(Cross(along, hull[(i + k) % n] - p)) <= Straightness * length;
       }
       if (!straight)
       {

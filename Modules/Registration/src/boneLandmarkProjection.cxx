@@ -12,8 +12,9 @@ namespace bone
 {
 namespace
 {
-/** A step that is smaller, mm or radians, is the last. */
+/** A step that is smaller, mm and radians, is the last: of a pose, and of one that is refined later. */
 constexpr double SmallestStep = 1e-12;
+constexpr double SmallestRoughStep = 1e-4;
 constexpr int    MostSteps = 200;
 /** Share of the matrix that keeps directions that nothing determines where they are. */
 constexpr double LeastDamping = 1e-9;
@@ -47,7 +48,7 @@ Square(double x)
  * returns the cost at the end. */
 template <typename TCost, typename TLinearize>
 double
-DescendDamped(int steps, RigidPose & pose, TCost && costOf, TLinearize && linearize)
+DescendDamped(int steps, double smallest, RigidPose & pose, TCost && costOf, TLinearize && linearize)
 {
   double         cost = costOf(pose), damping = 1e-4;
   LandmarkMatrix matrix;
@@ -74,7 +75,7 @@ DescendDamped(int steps, RigidPose & pose, TCost && costOf, TLinearize && linear
         pose = moved;
         cost = there;
         damping = std::max(LeastDamping, 0.1 * damping);
-        if (step.norm() < SmallestStep)
+        if (step.norm() < smallest)
         {
           return cost;
         }
@@ -199,6 +200,7 @@ RayFit::Descend(const std::vector<std::size_t> & sample, int steps, RigidPose & 
 {
   return DescendDamped(
     steps,
+    SmallestRoughStep,
     pose,
     [&](const RigidPose & at) { return this->Cost(sample, at); },
     [&](const RigidPose & at, LandmarkMatrix & matrix, LandmarkStep & gradient) {
@@ -297,6 +299,7 @@ DetectorFit::Descend(RigidPose & pose) const
 {
   return DescendDamped(
     MostSteps,
+    SmallestStep,
     pose,
     [this](const RigidPose & at) { return this->Cost(at); },
     [this](const RigidPose & at, LandmarkMatrix & matrix, LandmarkStep & gradient) {

@@ -16,6 +16,9 @@ namespace bone
 namespace
 {
 constexpr std::size_t SampleSize = 4;
+/** Samples that are tried in any case, and the chance that none of those tried is without outliers. */
+constexpr double LeastSamples = 20;
+constexpr double MissedSamples = 1e-6;
 /** Poses of a sample that are followed to their minimum, and poses of all samples that are refined. */
 constexpr std::size_t FollowedStarts = 6;
 constexpr std::size_t RefinedPoses = 8;
@@ -111,7 +114,7 @@ AllIds(std::size_t count)
   return ids;
 }
 
-/** Samples of `size` of `count` pairs: all where they are at most `most`, otherwise that many at random. */
+/** Samples of `size` of `count` pairs, in random order: all where they are at most `most`, otherwise that many. */
 std::vector<std::vector<std::size_t>>
 MakeSamples(std::size_t count, std::size_t size, std::size_t most, std::uint64_t seed)
 {
@@ -121,6 +124,7 @@ MakeSamples(std::size_t count, std::size_t size, std::size_t most, std::uint64_t
     all *= static_cast<double>(count - k) / static_cast<double>(k + 1);
   }
   std::vector<std::vector<std::size_t>> samples;
+  std::mt19937_64                       random(seed);
   if (all <= static_cast<double>(most))
   {
     std::vector<bool> chosen(count, false);
@@ -136,9 +140,12 @@ MakeSamples(std::size_t count, std::size_t size, std::size_t most, std::uint64_t
         }
       }
     } while (std::prev_permutation(chosen.begin(), chosen.end()));
+    for (std::size_t s = samples.size(); s > 1; --s)
+    {
+      std::swap(samples[s - 1], samples[random() % s]);
+    }
     return samples;
   }
-  std::mt19937_64          random(seed);
   std::vector<std::size_t> ids = AllIds(count);
   for (std::size_t s = 0; s < most; ++s)
   {
@@ -227,6 +234,26 @@ PosesOfSample(const RayFit & fit, const std::vector<std::size_t> & sample, const
     start.cost = fit.Descend(sample, 30, start.pose);
   }
   return starts;
+}
+
+/** How many samples find one without outliers, all but surely, where so many pairs are none. */
+double
+SamplesNeeded(const std::vector<bool> & inlier)
+{
+  const auto   inliers = static_cast<double>(std::count(inlier.begin(), inlier.end(), true));
+  const double good = std::pow(inliers / static_cast<double>(inlier.size()), static_cast<double>(SampleSize));
+  return good < 1 ? std::log(MissedSamples) / std::log(1 - good) : 0.0;
+}
+
+std::vector<bool>
+InliersOf(const DetectorFit & detector, const RigidPose & pose, std::size_t pairs, double tolerance)
+{
+  std::vector<bool> inlier(pairs);
+  for (std::size_t i = 0; i < pairs; ++i)
+  {
+    inlier[i] = detector.GetDistance(pose, i) < tolerance;
+  }
+  return inlier;
 }
 
 void
@@ -376,6 +403,7 @@ EstimatePose(const std::vector<XRayGeometry::View> & views,
   std::vector<Candidate> found;
   const auto             most = static_cast<std::size_t>(parameters.samples);
   const std::size_t      sampleSize = std::min(SampleSize, pairs.size());
+  double                 tried = 0.0;
   for (const auto & sample : MakeSamples(pairs.size(), sampleSize, most, parameters.seed))
   {
     const auto sampled = DistinctPoints(pairs, sample);
@@ -389,6 +417,12 @@ EstimatePose(const std::vector<XRayGeometry::View> & views,
       AddCandidate(found, pose, size);
     }
     KeepBest(found, 4 * RefinedPoses);
+    const auto inlier = InliersOf(detector, found.front().pose, pairs.size(), parameters.inlierDistance);
+    tried += 1.0;
+    if (tried >= std::max(LeastSamples, SamplesNeeded(inlier)))
+    {
+      break;
+    }
   }
   KeepBest(found, RefinedPoses);
   std::vector<Candidate> refined;
@@ -405,12 +439,12 @@ EstimatePose(const std::vector<XRayGeometry::View> & views,
 
   PoseEstimate estimate;
   estimate.pose = refined.front().pose;
+  estimate.inlier = InliersOf(detector, estimate.pose, pairs.size(), parameters.inlierDistance);
   double squares = 0.0, inliers = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i)
   {
     const double distance = detector.GetDistance(estimate.pose, i);
     estimate.distance.push_back(distance);
-    estimate.inlier.push_back(distance < parameters.inlierDistance);
     squares += estimate.inlier[i] ? distance * distance : 0.0;
     inliers += estimate.inlier[i] ? 1.0 : 0.0;
   }

@@ -78,26 +78,26 @@ IsDead(const std::vector<double> & pixels,
        std::size_t                 i,
        double                      k)
 {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  // Of two dead neighbours one is between the other and the rest.
+  int below = 0, above = 0;
   ForNeighbours(size, i, 1, [&](std::size_t j) {
-    low = finite[j] != 0 ? std::min(low, pixels[j]) : low;
-    high = finite[j] != 0 ? std::max(high, pixels[j]) : high;
+    below += finite[j] != 0 && pixels[j] <= pixels[i] ? 1 : 0;
+    above += finite[j] != 0 && pixels[j] >= pixels[i] ? 1 : 0;
   });
-  const bool          between = pixels[i] >= low && pixels[i] <= high;
+  if (below > 1 && above > 1)
+  {
+    return false;
+  }
   std::vector<double> near;
   near.reserve(24);
-  if (!between)
-  {
-    ForNeighbours(size, i, 2, [&](std::size_t j) {
-      if (finite[j] != 0)
-      {
-        near.push_back(pixels[j]);
-      }
-    });
-  }
+  ForNeighbours(size, i, 2, [&](std::size_t j) {
+    if (finite[j] != 0)
+    {
+      near.push_back(pixels[j]);
+    }
+  });
   if (near.size() < 8)
   {
-    // Of a pair each is an extreme of its surroundings; others are not dead.
     return false;
   }
   std::vector<double> sorted = near;
