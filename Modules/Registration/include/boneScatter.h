@@ -60,7 +60,7 @@ struct ScatterSolution
 {
   std::vector<double> primary;
   int                 iterations{ 0 };
-  double              change{ 0.0 }; ///< the last one's largest, as part of the primary
+  double              change{ 0.0 }; ///< the last one's largest, as part of the largest scatter
 };
 
 /** The primary photons P whose sum with their scatter is `total`, by the iteration P <- T P / (P + S(P)) until P

@@ -38,6 +38,12 @@ struct BlurAxis
     {
       weight /= sum;
     }
+    for (int pixel = 0; pixel < size; ++pixel)
+    {
+      const double at = std::clamp((pixel - 0.5 * (block - 1)) / block, 0.0, blocks - 1.0);
+      before.push_back(std::min(static_cast<int>(at), std::max(0, blocks - 2)));
+      share.push_back(at - before.back());
+    }
   }
 
   /** Blurs a line of blocks, which goes on at its ends as it is there. */
@@ -56,17 +62,10 @@ struct BlurAxis
     return blurred;
   }
 
-  /** The block before a pixel and the share of the one after it. */
-  std::pair<int, double>
-  Interpolate(int pixel) const
-  {
-    const double at = std::clamp((pixel - 0.5 * (block - 1)) / block, 0.0, blocks - 1.0);
-    const int    first = std::min(static_cast<int>(at), std::max(0, blocks - 2));
-    return { first, at - first };
-  }
-
   int                 size, block, blocks;
   std::vector<double> kernel;
+  std::vector<int>    before; ///< of each pixel, the block before it
+  std::vector<double> share;  ///< and the share of the block after that
 };
 } // namespace
 
@@ -110,17 +109,15 @@ BlurWidely(const std::vector<double> & values, const DetectorGrid & grid, double
   silent.For(
     y.size,
     [&](std::size_t r) {
-      const auto     v = y.Interpolate(static_cast<int>(r));
-      const int      next = std::min(v.first + 1, y.blocks - 1);
-      const double * upper = coarse.data() + static_cast<std::size_t>(v.first) * x.blocks;
+      const int      next = std::min(y.before[r] + 1, y.blocks - 1), step = x.blocks > 1 ? 1 : 0;
+      const double * upper = coarse.data() + static_cast<std::size_t>(y.before[r]) * x.blocks;
       const double * lower = coarse.data() + static_cast<std::size_t>(next) * x.blocks;
       for (int c = 0; c < x.size; ++c)
       {
-        const auto   u = x.Interpolate(c);
-        const int    right = std::min(u.first + 1, x.blocks - 1);
-        const double above = upper[u.first] + u.second * (upper[right] - upper[u.first]);
-        const double below = lower[u.first] + u.second * (lower[right] - lower[u.first]);
-        result[r * x.size + c] = above + v.second * (below - above);
+        const int    left = x.before[c];
+        const double above = upper[left] + x.share[c] * (upper[left + step] - upper[left]);
+        const double below = lower[left] + x.share[c] * (lower[left + step] - lower[left]);
+        result[r * x.size + c] = above + y.share[r] * (below - above);
       }
     },
     16);
@@ -154,19 +151,25 @@ SubtractScatter(const std::vector<double> & total,
   {
     return solution;
   }
-  auto & primary = solution.primary;
+  // Of an error of S, a step leaves 1 - relaxation (1 + ratio g), where g, from 0 to about 1, is what the blur leaves
+  // of it.
+  const double        relaxation = 2 / (2 + model.ratio);
+  std::vector<double> scatter(total.size(), 0.0);
+  double              largest = 0.0;
   do
   {
     execution.ThrowIfAborted();
-    const auto scatter = ComputeScatter(primary, grid, model, execution);
-    solution.change = 0.0;
-    for (std::size_t i = 0; i < primary.size(); ++i)
+    const auto made = ComputeScatter(solution.primary, grid, model, execution);
+    double     change = 0.0;
+    for (std::size_t i = 0; i < scatter.size(); ++i)
     {
-      const double sum = primary[i] + scatter[i];
-      const double next = sum > 0 ? std::max(leastShare * total[i], total[i] * primary[i] / sum) : total[i];
-      solution.change = std::max(solution.change, next > 0 ? std::abs(next - primary[i]) / next : 0.0);
-      primary[i] = next;
+      const double step = relaxation * (made[i] - scatter[i]);
+      scatter[i] += step;
+      change = std::max(change, std::abs(step));
+      largest = std::max(largest, scatter[i]);
+      solution.primary[i] = std::max(leastShare * total[i], total[i] - scatter[i]);
     }
+    solution.change = largest > 0 ? change / largest : 0.0;
     ++solution.iterations;
   } while (solution.change > SmallestChange && solution.iterations < MostIterations);
   return solution;
