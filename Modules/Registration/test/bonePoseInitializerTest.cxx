@@ -308,6 +308,50 @@ TEST(PoseInitializer, APriorHoldsWhatLandmarksDoNotTell)
   EXPECT_NEAR(std::sqrt(beam.dot(found.covariance.topLeftCorner<3, 3>() * beam)), 30, 1);
 }
 
+TEST(PoseInitializer, LandmarksOfNoAccuracyLeaveThePriorsDeviations)
+{
+  const std::vector<View>   views = { Arm(0) };
+  PoseInitializerParameters parameters;
+  parameters.landmarkDeviation = 10000;
+  parameters.inlierDistance = 1000;
+  PosePrior prior;
+  prior.translationDeviation = 3;
+  prior.rotationDeviation = 0.02;
+  const auto points = ModelPoints(6, 3);
+  prior.pose.centre = Vector3::Zero();
+  for (const Vector3 & p : points)
+  {
+    prior.pose.centre += p / 6;
+  }
+  RigidPose truth;
+  truth.translation = { 10, 0, 0 };
+  const auto found = EstimatePose(views, Seen(views, points, truth), parameters, prior);
+  EXPECT_LT(found.pose.translation.norm(), 0.1);
+  for (int k = 0; k < 6; ++k)
+  {
+    EXPECT_NEAR(std::sqrt(found.covariance(k, k)), k < 3 ? 3 : 0.02, k < 3 ? 0.03 : 2e-4);
+  }
+}
+
+TEST(PoseInitializer, APointsUncertaintyDoesNotDependOnThePriorsCentre)
+{
+  const std::vector<View>      views = { Arm(0) };
+  const auto                   points = ModelPoints(6, 3);
+  const Vector3                point(40, -30, 70);
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const Vector3 & centre : { Vector3(0, 0, 0), Vector3(200, -100, 50) })
+  {
+    PosePrior prior;
+    prior.pose.centre = centre;
+    const auto                  found = EstimatePose(views, Seen(views, points, RigidPose()), {}, prior);
+    const Vector3               r = point - found.pose.centre;
+    Eigen::Matrix<double, 3, 6> byStep;
+    byStep << 1, 0, 0, 0, r.z(), -r.y(), 0, 1, 0, -r.z(), 0, r.x(), 0, 0, 1, r.y(), -r.x(), 0;
+    covariances.emplace_back(byStep * found.covariance * byStep.transpose());
+  }
+  EXPECT_LT((covariances[0] - covariances[1]).norm(), 1e-3 * covariances[0].norm());
+}
+
 TEST(PoseInitializer, RefusesWhatTellsNoPose)
 {
   const std::vector<View> views = { Arm(0) };
