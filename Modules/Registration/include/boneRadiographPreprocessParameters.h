@@ -38,7 +38,8 @@ struct ParameterChoices<DisplayCurve>
   value(double, collimatorMargin, CollimatorMargin, 1.0, ParameterRange::Between(0, 20), \
     "% of the longer side", "collimator-margin", "Margin within the borders that is not used: their half-shadow") \
   value(double, deadPixelThreshold, DeadPixelThreshold, 8.0, ParameterRange::NotNegative(), \
-    "standard deviations", "dead-pixels", "Isolated pixels that differ so much from the median around them are dead; 0: none") \
+    "standard deviations", "dead-pixels", \
+    "Isolated pixels that differ so much from the median around them are dead; 0: none") \
   value(double, scatterToPrimary, ScatterToPrimary, 0.0, ParameterRange::Between(0, 3), "", "scatter", \
     "Scatter to primary photons behind the body; 0: none is subtracted") \
   value(double, scatterWidth, ScatterWidth, 50.0, ParameterRange::Length(), "mm at the detector", "scatter-width", \
