@@ -33,6 +33,7 @@ TESTS = {"Core": ["Core", "Tiling", "Quality", "Density", "Simplification", "Int
          "Radiograph": ["Radiograph", "Integration"],
          "Atlas": ["Atlas"],
          "Phantom": ["Phantom", "Integration"],
+         "Registration": ["Registration"],
          "Evaluation": ["Integration"]}
 
 # What is changed, and into what. Changes that mean the same in most places, as < into <=, are left out.

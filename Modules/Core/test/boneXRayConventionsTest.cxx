@@ -223,3 +223,80 @@ TEST(XRayConventions, RtksGantryTurnsTheSourceAboutY)
   p.gantryAngle = 90;
   EXPECT_TRUE(FromRtk(p, grid).source.isApprox(Vector3(1000, 0, 0), 1e-12));
 }
+
+TEST(XRayConventions, ACArmAtZeroHasItsDetectorBeforeTheChest)
+{
+  CArmView arm;
+  arm.sourceToIsocenter = 700;
+  arm.sourceToDetector = 1000;
+  arm.size = { { 401, 201 } };
+  arm.spacing = { 0.5, 0.25 };
+  const View view = FromCArm(arm);
+  EXPECT_FALSE(view.parallel);
+  EXPECT_TRUE(view.source.isApprox(Vector3(0, 700, 0), 1e-12)) << "at the back";
+  EXPECT_TRUE(view.detectorOrigin.isApprox(Vector3(-100, -300, 25), 1e-12)) << "200 half columns, 100 quarter rows";
+  EXPECT_TRUE(view.detectorU.isApprox(Vector3(1, 0, 0), 1e-12)) << "columns to the patient's left";
+  EXPECT_TRUE(view.detectorV.isApprox(Vector3(0, 0, -1), 1e-12)) << "rows to the feet";
+  const auto geometry = Geometry(view);
+  EXPECT_NEAR((geometry->ProjectPoint({ 0, 0, 0 }) - Vector2(200, 100)).norm(), 0, 1e-10);
+  // 7 mm at the isocentre are 10 mm at the detector.
+  EXPECT_NEAR((geometry->ProjectPoint({ 7, 0, 14 }) - Vector2(220, 20)).norm(), 0, 1e-10);
+}
+
+TEST(XRayConventions, ACArmTurnsToTheLeftAndToTheHead)
+{
+  CArmView arm;
+  arm.size = { { 3, 3 } };
+  arm.isocenter = { 10, 20, 30 };
+  arm.primary = 90;
+  const View lateral = FromCArm(arm);
+  EXPECT_NEAR((lateral.source - Vector3(-690, 20, 30)).norm(), 0, 1e-9) << "source at the patient's right";
+  EXPECT_NEAR((Geometry(lateral)->GetPixelPoint(1, 1) - Vector3(310, 20, 30)).norm(), 0, 1e-9);
+  EXPECT_NEAR((lateral.detectorU - Vector3(0, 1, 0)).norm(), 0, 1e-12) << "the face to the viewer's left";
+  EXPECT_NEAR((lateral.detectorV - Vector3(0, 0, -1)).norm(), 0, 1e-12);
+
+  arm.primary = 0;
+  arm.secondary = 30;
+  const double c = std::sqrt(3) / 2;
+  const View   cranial = FromCArm(arm);
+  EXPECT_NEAR((cranial.source - Vector3(10, 20 + 700 * c, 30 - 350)).norm(), 0, 1e-9) << "source to the feet";
+  EXPECT_NEAR((Geometry(cranial)->GetPixelPoint(1, 1) - Vector3(10, 20 - 300 * c, 30 + 150)).norm(), 0, 1e-9);
+  EXPECT_NEAR((cranial.detectorU - Vector3(1, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((cranial.detectorV - Vector3(0, -0.5, -c)).norm(), 0, 1e-12) << "downwards leads to the feet and forward";
+}
+
+TEST(XRayConventions, ACArmsPixelsAreOfOneHandednessAndItsCentreIsWhereTheIsocentreIsSeen)
+{
+  CArmView arm;
+  arm.isocenter = { 5, -60, 700 };
+  arm.centre = { 100, 350.5 };
+  arm.spacing = { 0.3, 0.4 };
+  for (const double primary : { -170.0, -90.0, -35.0, 0.0, 20.0, 135.0 })
+  {
+    for (const double secondary : { -90.0, -25.0, 0.0, 40.0 })
+    {
+      arm.primary = primary;
+      arm.secondary = secondary;
+      const View    view = FromCArm(arm);
+      const Vector3 beam = (arm.isocenter - view.source).normalized();
+      EXPECT_NEAR((view.detectorU.cross(view.detectorV) + beam).norm(), 0, 1e-12) << primary << ' ' << secondary;
+      EXPECT_NEAR((Geometry(view)->ProjectPoint(arm.isocenter) - arm.centre).norm(), 0, 1e-9);
+      EXPECT_NEAR((arm.isocenter - view.source).norm(), arm.sourceToIsocenter, 1e-9);
+      EXPECT_NEAR((Geometry(view)->GetPixelPoint(100, 350.5) - view.source).norm(), arm.sourceToDetector, 1e-9);
+    }
+  }
+}
+
+TEST(XRayConventions, RefusesACArmThatCannotBe)
+{
+  for (int which = 0; which < 6; ++which)
+  {
+    CArmView arm;
+    arm.primary = which == 0 ? 181 : which == 1 ? std::nan("") : 0;
+    arm.secondary = which == 2 ? -91 : 0;
+    arm.sourceToIsocenter = which == 3 ? -700 : which == 4 ? 1200 : 700;
+    arm.spacing.x() = which == 5 ? 0 : 1;
+    EXPECT_THROW(FromCArm(arm), itk::ExceptionObject) << which;
+  }
+  EXPECT_NO_THROW(FromCArm(CArmView()));
+}

@@ -36,8 +36,8 @@ struct RigidPose
     return rotation.transpose() * (x - centre - translation) + centre;
   }
 
-  /** This pose after a small motion of the model in its own space: translation along x, y, z (mm), rotation vector about
-   * axes through the centre (radians), the order of RadiographModes. */
+  /** This pose after a small motion of the model in its own space: translation along x, y, z (mm), rotation vector
+   * about axes through the centre (radians), the order of RadiographModes. */
   RigidPose
   Moved(const Eigen::Matrix<double, 6, 1> & step) const;
 

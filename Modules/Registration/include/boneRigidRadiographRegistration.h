@@ -22,8 +22,8 @@ namespace bone
  *
  * Inputs:
  * - "Model": a DensityHierarchy, all of whose levels have a density (HU: what they exceed water by is what shows);
- * - for each view v = 0, 1, ... its X-ray "Radiograph<v>", an image of columns x rows x 1 line integrals in any unit, its
- *   "Geometry<v>" (XRayGeometry), and, if some pixels are not to count, "Weights<v>", an image of that size, 0 to 1.
+ * - for each view v = 0, 1, ... its X-ray "Radiograph<v>", an image of columns x rows x 1 line integrals in any unit,
+ * its "Geometry<v>" (XRayGeometry), and, if some pixels are not to count, "Weights<v>", an image of that size, 0 to 1.
  *   RadiographPreprocessFilter makes line integrals and weights of what a detector gives. Only the image's pixels are
  *   looked at, its place in space is the geometry's;
  * - "InitialTransform": where the model is about, an itk::Euler3DTransform from the model's space to the geometry's;
@@ -67,7 +67,10 @@ public:
 
   /** View `view`; those before it must be set too. */
   void
-  SetView(unsigned int view, const TImage * radiograph, const XRayGeometry * geometry, const TImage * weights = nullptr);
+  SetView(unsigned int         view,
+          const TImage *       radiograph,
+          const XRayGeometry * geometry,
+          const TImage *       weights = nullptr);
   unsigned int
   GetNumberOfViews() const;
 

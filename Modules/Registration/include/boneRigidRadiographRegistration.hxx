@@ -78,8 +78,8 @@ RigidRadiographRegistration<TMesh, TImage>::CopyPixels(const char * what, unsign
       region.GetSize(1) != static_cast<itk::SizeValueType>(size[1]) || region.GetSize(2) != 1)
   {
     itkExceptionMacro("View " << view + 1 << ": the input '" << NameOf(what, view) << "' has " << region.GetSize(0)
-                              << " x " << region.GetSize(1) << " x " << region.GetSize(2)
-                              << " pixels, its geometry " << size[0] << " x " << size[1] << " x 1.");
+                              << " x " << region.GetSize(1) << " x " << region.GetSize(2) << " pixels, its geometry "
+                              << size[0] << " x " << size[1] << " x 1.");
   }
   std::vector<float> pixels;
   pixels.reserve(region.GetNumberOfPixels());

@@ -63,11 +63,11 @@ struct RigidRegistrationResult
  * The same result for any number of threads. `observe` is called after each step of the refinement with the pose and
  * its cost. Throws std::invalid_argument where a view cannot be used, with its number. */
 RigidRegistrationResult
-RegisterRigid(const std::vector<MeshArrays> &                          levels,
-              const std::vector<RadiographView> &                      views,
-              const RigidPose &                                        initial,
-              const RigidRadiographParameters &                        parameters,
-              const Execution &                                        execution,
+RegisterRigid(const std::vector<MeshArrays> &                        levels,
+              const std::vector<RadiographView> &                    views,
+              const RigidPose &                                      initial,
+              const RigidRadiographParameters &                      parameters,
+              const Execution &                                      execution,
               const std::function<void(const RigidPose &, double)> & observe = {});
 } // namespace bone
 

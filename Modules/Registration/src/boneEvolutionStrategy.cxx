@@ -45,7 +45,8 @@ const Eigen::MatrixXd &
 EvolutionStrategy::Ask()
 {
   const Eigen::Index n = m_Mean.size();
-  const auto         normal = SampleCoefficients(n * m_Steps.cols(), m_Seed * 1000003 + static_cast<std::uint64_t>(m_Generation));
+  const auto         normal =
+    SampleCoefficients(n * m_Steps.cols(), m_Seed * 1000003 + static_cast<std::uint64_t>(m_Generation));
   m_Steps = m_Axes * m_Lengths.asDiagonal() * normal.reshaped(n, m_Steps.cols());
   const Eigen::MatrixXd wanted = (m_Sigma * m_Steps).colwise() + m_Mean;
   m_Candidates = wanted.cwiseMax(-1.0).cwiseMin(1.0);
@@ -86,8 +87,7 @@ EvolutionStrategy::Tell(const Eigen::VectorXd & costs)
   const double expected = std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n)); // length of a normal vector
 
   const Eigen::VectorXd whitened = m_Axes * m_Lengths.cwiseInverse().asDiagonal() * (m_Axes.transpose() * move);
-  m_PathOfSigma =
-    (1.0 - ofSigma) * m_PathOfSigma + std::sqrt(ofSigma * (2.0 - ofSigma) * m_Effective) * whitened;
+  m_PathOfSigma = (1.0 - ofSigma) * m_PathOfSigma + std::sqrt(ofSigma * (2.0 - ofSigma) * m_Effective) * whitened;
   const double settled = std::sqrt(1.0 - std::pow(1.0 - ofSigma, 2.0 * m_Generation));
   const bool   straight = m_PathOfSigma.norm() / settled < (1.4 + 2.0 / (n + 1.0)) * expected;
   m_PathOfCovariance *= 1.0 - ofPath;
@@ -96,8 +96,8 @@ EvolutionStrategy::Tell(const Eigen::VectorXd & costs)
     m_PathOfCovariance += std::sqrt(ofPath * (2.0 - ofPath) * m_Effective) * move;
   }
   const double lost = straight ? 0.0 : rankOne * ofPath * (2.0 - ofPath);
-  m_Covariance = (1.0 - rankOne - rankMany + lost) * m_Covariance +
-                 rankOne * m_PathOfCovariance * m_PathOfCovariance.transpose();
+  m_Covariance =
+    (1.0 - rankOne - rankMany + lost) * m_Covariance + rankOne * m_PathOfCovariance * m_PathOfCovariance.transpose();
   for (Eigen::Index i = 0; i < m_Weights.size(); ++i)
   {
     const auto step = m_Steps.col(order[static_cast<std::size_t>(i)]);

@@ -50,7 +50,7 @@ ExteriorFaces(const MeshArrays & mesh)
 std::vector<FlatCut>
 LikelyPlanes(const std::vector<ExteriorFace> & faces)
 {
-  constexpr double                                  least = 10.0; // mm^2
+  constexpr double                                          least = 10.0; // mm^2
   std::map<std::array<long, 4>, std::pair<FlatCut, double>> groups;
   for (const ExteriorFace & face : faces)
   {
@@ -60,9 +60,9 @@ LikelyPlanes(const std::vector<ExteriorFace> & faces)
       const Vector3 inward = -face.area / size;
       const double  offset = inward.dot(face.corners[0]);
       auto &        group = groups[{ { std::lround(20.0 * inward.x()),
-                               std::lround(20.0 * inward.y()),
-                               std::lround(20.0 * inward.z()),
-                               std::lround(offset) } }];
+                                       std::lround(20.0 * inward.y()),
+                                       std::lround(20.0 * inward.z()),
+                                       std::lround(offset) } }];
       group.first = { inward, offset };
       group.second += size;
     }

@@ -16,8 +16,8 @@ namespace
 /** Derivatives of one image along columns and rows. */
 using Components = std::array<std::vector<float>, 2>;
 
-/** Weighted sums over the pixels of blocks or patches, #n of them; channel 0 is the X-ray, 1 the radiograph, the rest are
- * its derivatives by the parameters. */
+/** Weighted sums over the pixels of blocks or patches, #n of them; channel 0 is the X-ray, 1 the radiograph, the rest
+ * are its derivatives by the parameters. */
 struct PatchSums
 {
   Eigen::VectorXd                weight;
@@ -138,9 +138,9 @@ struct PatchGradientCorrelation::Data
   PatchSums
   Sum(const std::vector<Components> & channels) const
   {
-    const auto               count = static_cast<Eigen::Index>(channels.size()) + 1;
-    PatchSums                ofBlocks(count, static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
-    std::vector<float>       model(static_cast<std::size_t>(size[0]));
+    const auto         count = static_cast<Eigen::Index>(channels.size()) + 1;
+    PatchSums          ofBlocks(count, static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
+    std::vector<float> model(static_cast<std::size_t>(size[0]));
     for (int r = 0; r < size[1]; ++r)
     {
       const std::size_t start = static_cast<std::size_t>(r) * size[0];
@@ -342,9 +342,9 @@ PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & image
   const double correlation = shared / total;
   value.cost = 1.0 - correlation;
   // The patches' shares in clusters of two by two patches' width.
-  constexpr int    width = 4;
-  const int        clusters = (m_Data->blocks[0] - 1 + width - 1) / width;
-  const int        rows = (m_Data->blocks[1] - 1 + width - 1) / width;
+  constexpr int width = 4;
+  const int     clusters = (m_Data->blocks[0] - 1 + width - 1) / width;
+  const int     rows = (m_Data->blocks[1] - 1 + width - 1) / width;
   value.shares = Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(clusters) * rows);
   Eigen::VectorXd ofGram = Eigen::VectorXd::Zero(patches);
   for (Eigen::Index p = 0; p < patches; ++p)
@@ -379,9 +379,9 @@ PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & image
 std::vector<float>
 PatchGradientCorrelation::Correlations(const float * image) const
 {
-  const PatchSums    sums = m_Data->Sum({ m_Data->Gradient(image) });
-  std::vector<float> map(m_Data->Pixels(), 0.0f);
-  const double       least = 1e-12 * std::max(0.0, sums.withModel.row(1).maxCoeff());
+  const PatchSums     sums = m_Data->Sum({ m_Data->Gradient(image) });
+  std::vector<float>  map(m_Data->Pixels(), 0.0f);
+  const double        least = 1e-12 * std::max(0.0, sums.withModel.row(1).maxCoeff());
   std::vector<double> ofBlocks(static_cast<std::size_t>(m_Data->blocks[0]) * m_Data->blocks[1], 0.0);
   for (Eigen::Index p = 0; p < m_Data->Patches(); ++p)
   {
@@ -390,7 +390,8 @@ PatchGradientCorrelation::Correlations(const float * image) const
       for (int i = 0; i < 4; ++i)
       {
         ofBlocks[static_cast<std::size_t>(m_Data->BlockOf(p, i % 2, i / 2))] +=
-          0.25 * sums.withFixed(1, p) * m_Data->inverseNorms[static_cast<std::size_t>(p)] / std::sqrt(sums.withModel(1, p));
+          0.25 * sums.withFixed(1, p) * m_Data->inverseNorms[static_cast<std::size_t>(p)] /
+          std::sqrt(sums.withModel(1, p));
       }
     }
   }

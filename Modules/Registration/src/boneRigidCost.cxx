@@ -70,8 +70,8 @@ RigidCost::EvaluateDerivatives(const RigidPose &                         pose,
   modes.shape = shape;
   modes.pose = true;
   modes.poseCentre = pose.centre;
-  std::vector<MetricValue>        values(m_Views.size());
-  std::vector<std::vector<float>> images(m_Views.size());
+  std::vector<MetricValue>          values(m_Views.size());
+  std::vector<std::vector<float>>   images(m_Views.size());
   std::vector<std::vector<float *>> pointers(m_Views.size());
   for (std::size_t v = 0; v < m_Views.size(); ++v)
   {
@@ -84,8 +84,8 @@ RigidCost::EvaluateDerivatives(const RigidPose &                         pose,
     }
     ProjectMeshDerivatives(m_Mesh.points, m_Mesh, view, m_Model.Parameters(), modes, execution, pointers[v]);
   }
-  execution.Silent().For(
-    m_Views.size(), [&](std::size_t v) { values[v] = m_Metrics[v]->EvaluateDerivatives(pointers[v]); });
+  execution.Silent().For(m_Views.size(),
+                         [&](std::size_t v) { values[v] = m_Metrics[v]->EvaluateDerivatives(pointers[v]); });
   const auto  parameters = static_cast<Eigen::Index>(modes.Count());
   const auto  share = 1.0 / static_cast<double>(m_Views.size());
   MetricValue total;

@@ -54,10 +54,10 @@ RigidPose::ToModelSpace(const XRayGeometry::View & view) const
 itk::SmartPointer<itk::Euler3DTransform<double>>
 RigidPose::ToTransform() const
 {
-  auto                                       transform = itk::Euler3DTransform<double>::New();
+  auto                                      transform = itk::Euler3DTransform<double>::New();
   itk::Euler3DTransform<double>::MatrixType matrix;
-  itk::Point<double, 3>                      c;
-  itk::Vector<double, 3>                     t;
+  itk::Point<double, 3>                     c;
+  itk::Vector<double, 3>                    t;
   for (int i = 0; i < 3; ++i)
   {
     for (int j = 0; j < 3; ++j)

@@ -81,8 +81,8 @@ OutwardMove(const MeshArrays & mesh)
   for (const auto & face : BoundaryFaces(mesh))
   {
     const Vector3 & a = mesh.points[static_cast<std::size_t>(face[0])];
-    const Vector3   area = (mesh.points[static_cast<std::size_t>(face[1])] - a)
-                           .cross(mesh.points[static_cast<std::size_t>(face[2])] - a);
+    const Vector3   area =
+      (mesh.points[static_cast<std::size_t>(face[1])] - a).cross(mesh.points[static_cast<std::size_t>(face[2])] - a);
     for (const IdType p : face)
     {
       move[static_cast<std::size_t>(p)] += area;
@@ -110,11 +110,11 @@ struct ProjectedLevel
 class RigidSearch
 {
 public:
-  RigidSearch(const std::vector<MeshArrays> &                          levels,
-              const std::vector<RadiographView> &                      views,
-              const RigidPose &                                        initial,
-              const RigidRadiographParameters &                        parameters,
-              const std::function<void(const RigidPose &, double)> &   observe)
+  RigidSearch(const std::vector<MeshArrays> &                        levels,
+              const std::vector<RadiographView> &                    views,
+              const RigidPose &                                      initial,
+              const RigidRadiographParameters &                      parameters,
+              const std::function<void(const RigidPose &, double)> & observe)
     : m_P(parameters)
     , m_Views(views)
     , m_Observe(observe)
@@ -153,8 +153,8 @@ public:
     const int searches = m_IsSearched ? m_P.searches : 1;
     for (int search = 0; search < searches && best.quality != RegistrationQuality::Ok; ++search)
     {
-      const Execution part = execution.Part(static_cast<double>(search) / searches, (search + 1.0) / searches);
-      const RigidPose start = m_IsSearched ? this->Search(search, part.Part(0.0, 0.7)) : m_Initial;
+      const Execution         part = execution.Part(static_cast<double>(search) / searches, (search + 1.0) / searches);
+      const RigidPose         start = m_IsSearched ? this->Search(search, part.Part(0.0, 0.7)) : m_Initial;
       RigidRegistrationResult result = this->Refine(start, part.Part(0.7, 1.0));
       if (result.cost < best.cost)
       {
@@ -238,8 +238,8 @@ private:
   void
   Descend(const RigidCost & cost, RigidRegistrationResult & at, const Execution & execution) const
   {
-    constexpr double shortest = 0.01;    // mm
-    constexpr double least = 1e-4;       // of the cost, which kinks at the projected edges make as rough as that
+    constexpr double shortest = 0.01; // mm
+    constexpr double least = 1e-4;    // of the cost, which kinks at the projected edges make as rough as that
     constexpr int    mostRefusals = 2;
     MetricValue      value = cost.EvaluateDerivatives(at.pose, execution.Silent());
     double           damping = 1e-3;
@@ -280,10 +280,10 @@ private:
   void
   Judge(RigidRegistrationResult & result, const Execution & execution) const
   {
-    constexpr double away = 8.0; // mm
-    constexpr double ofTrue = 0.45;
-    constexpr double ofWrong = 0.3;
-    const RigidCost & cost = *m_Costs.back();
+    constexpr double       away = 8.0; // mm
+    constexpr double       ofTrue = 0.45;
+    constexpr double       ofWrong = 0.3;
+    const RigidCost &      cost = *m_Costs.back();
     std::array<double, 12> costs;
     execution.Silent().For(costs.size(), [&](std::size_t k) {
       Vector6 step = Vector6::Zero();
@@ -313,28 +313,28 @@ private:
     result.covariance = turn * (ofShares * ofShares.transpose() + ofSurface * ofSurface.transpose()) * turn.transpose();
   }
 
-  const RigidRadiographParameters &                        m_P;
-  const std::vector<RadiographView> &                      m_Views;
+  const RigidRadiographParameters &                      m_P;
+  const std::vector<RadiographView> &                    m_Views;
   const std::function<void(const RigidPose &, double)> & m_Observe;
-  RigidPose                                                m_Initial;
-  std::vector<Resolution>                                  m_Resolutions;
-  std::vector<Vector3>                                     m_Surface;
-  MeshArrays                                               m_Means;
-  double                                                   m_Radius{ 1.0 };
-  Vector6                                                  m_Box;
-  bool                                                     m_IsSearched{ false };
-  std::vector<std::unique_ptr<const ProjectedLevel>>       m_Levels;
-  std::vector<std::unique_ptr<const RigidCost>>            m_Costs;
+  RigidPose                                              m_Initial;
+  std::vector<Resolution>                                m_Resolutions;
+  std::vector<Vector3>                                   m_Surface;
+  MeshArrays                                             m_Means;
+  double                                                 m_Radius{ 1.0 };
+  Vector6                                                m_Box;
+  bool                                                   m_IsSearched{ false };
+  std::vector<std::unique_ptr<const ProjectedLevel>>     m_Levels;
+  std::vector<std::unique_ptr<const RigidCost>>          m_Costs;
 };
 } // namespace
 
 RigidRegistrationResult
-RegisterRigid(const std::vector<MeshArrays> &                          levels,
-              const std::vector<RadiographView> &                      views,
-              const RigidPose &                                        initial,
-              const RigidRadiographParameters &                        parameters,
-              const Execution &                                        execution,
-              const std::function<void(const RigidPose &, double)> &   observe)
+RegisterRigid(const std::vector<MeshArrays> &                        levels,
+              const std::vector<RadiographView> &                    views,
+              const RigidPose &                                      initial,
+              const RigidRadiographParameters &                      parameters,
+              const Execution &                                      execution,
+              const std::function<void(const RigidPose &, double)> & observe)
 {
   const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
   if (cuts.empty() || !(parameters.cutLength > 0.0))

@@ -11,9 +11,9 @@ namespace
 {
 TEST(ImageGradient, IsExactForLinearImagesAndNothingAtTheBorder)
 {
-  constexpr int            columns = 20, rows = 16;
+  constexpr int             columns = 20, rows = 16;
   const bone::ImageGradient gradient(columns, rows, 1.0);
-  std::vector<float>       image, x(columns * rows), y(columns * rows);
+  std::vector<float>        image, x(columns * rows), y(columns * rows);
   for (int r = 0; r < rows; ++r)
   {
     for (int c = 0; c < columns; ++c)

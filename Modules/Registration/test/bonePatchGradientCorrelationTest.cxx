@@ -166,7 +166,8 @@ TEST(PatchGradientCorrelation, HessianIsThatOfTheCostWhereImagesAgree)
   {
     moved[i] += 0.05f * images[1][i];
   }
-  EXPECT_NEAR(value.hessian(0, 0) * 0.05 * 0.05 / 2.0, metric.Evaluate(moved.data()), 0.05 * metric.Evaluate(moved.data()));
+  EXPECT_NEAR(
+    value.hessian(0, 0) * 0.05 * 0.05 / 2.0, metric.Evaluate(moved.data()), 0.05 * metric.Evaluate(moved.data()));
 }
 
 TEST(PatchGradientCorrelation, PixelsWithoutWeightDoNotCount)

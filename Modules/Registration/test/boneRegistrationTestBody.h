@@ -13,14 +13,15 @@ namespace bone
 {
 namespace test
 {
-/** A body of no symmetry about (10, 20, 30), some 70 mm long, denser to one side, with `cells` cubes along each axis. */
+/** A body of no symmetry about (10, 20, 30), some 70 mm long, denser to one side, with `cells` cubes along each axis.
+ */
 inline MeshArrays
 Body(int cells)
 {
-  const Vector3               centre(10, 20, 30);
-  const std::array<Vector3, 3> horns{ { Vector3(1, 0.2, 0.5).normalized(),
-                                        Vector3(-0.3, 0.5, -1).normalized(),
-                                        Vector3(-0.8, -1, 0.4).normalized() } };
+  const Vector3                centre(10, 20, 30);
+  const std::array<Vector3, 3> horns{
+    { Vector3(1, 0.2, 0.5).normalized(), Vector3(-0.3, 0.5, -1).normalized(), Vector3(-0.8, -1, 0.4).normalized() }
+  };
   const std::array<double, 3> heights{ { 18, 26, 14 } };
   MeshArrays                  mesh = BallMesh(cells, Vector3::Zero(), 1.0);
   for (Vector3 & p : mesh.points)
@@ -55,8 +56,8 @@ ViewOf(const Vector3 & beam, int pixels = 96)
   view.detectorV = beam.cross(view.detectorU);
   view.size = { { pixels, pixels } };
   view.spacing = Vector2::Constant(1.6 * 96 / pixels);
-  view.detectorOrigin = centre + 300.0 * beam -
-                        0.5 * (pixels - 1) * view.spacing[0] * (view.detectorU + view.detectorV);
+  view.detectorOrigin =
+    centre + 300.0 * beam - 0.5 * (pixels - 1) * view.spacing[0] * (view.detectorU + view.detectorV);
   return view;
 }
 

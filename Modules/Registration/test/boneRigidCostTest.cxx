@@ -60,7 +60,8 @@ TEST(RigidCost, GradientsAlongAWayAddUpToTheCost)
   Vector6     way;
   way << 1.5, -2, 1, 0.04, 0.06, -0.05;
   const auto at = [&](double share) { return Truth.Moved((0.5 + share) * way); };
-  EXPECT_NEAR(scene.cost->EvaluateDerivatives(at(0.5), Execution()).cost, scene.cost->Evaluate(at(0.5), Execution()), 1e-6);
+  EXPECT_NEAR(
+    scene.cost->EvaluateDerivatives(at(0.5), Execution()).cost, scene.cost->Evaluate(at(0.5), Execution()), 1e-6);
   double sum = 0.0;
   for (int i = 0; i < Places; ++i)
   {
@@ -91,8 +92,7 @@ TEST(RigidCost, DoesNotChangeWhenEverythingMoves)
   RigidPose   movedPose;
   movedPose.rotation = motion.rotation * pose.rotation;
   movedPose.translation = motion.Apply(pose.Apply(Vector3::Zero()));
-  EXPECT_NEAR(
-    moved.cost->Evaluate(movedPose, Execution()), scene.cost->Evaluate(pose, Execution()), 1e-4);
+  EXPECT_NEAR(moved.cost->Evaluate(movedPose, Execution()), scene.cost->Evaluate(pose, Execution()), 1e-4);
 }
 
 TEST(RigidCost, NamesTheViewThatTellsNothing)
@@ -149,8 +149,8 @@ TEST(RigidCostMetric, DerivativesOfItsParametersPointDownhill)
 
 TEST(RigidCostMetric, ServesOptimisersOfITK)
 {
-  const Scene     scene(Truth);
-  const RigidPose start = PoseOf(1.5, -1, 0, 0.08, 0.06, -0.05);
+  const Scene                                                  scene(Truth);
+  const RigidPose                                              start = PoseOf(1.5, -1, 0, 0.08, 0.06, -0.05);
   itk::ObjectToObjectOptimizerBaseTemplate<double>::ScalesType scales(6);
   for (unsigned int k = 0; k < 6; ++k)
   {

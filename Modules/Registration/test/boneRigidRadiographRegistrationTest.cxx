@@ -185,10 +185,10 @@ TEST(RigidRadiographRegistration, AnXRayWithoutTheBoneIsNoSuccess)
 
 TEST(RigidRadiographRegistration, IsLazyAndTellsEachStep)
 {
-  auto       registration = MakeRegistration(Truth);
-  int        steps = 0;
-  auto       command = itk::FunctionCommand::New();
-  double     last = 0.0;
+  auto   registration = MakeRegistration(Truth);
+  int    steps = 0;
+  auto   command = itk::FunctionCommand::New();
+  double last = 0.0;
   command->SetCallback([&](const itk::EventObject &) {
     ++steps;
     last = registration->GetCurrentCost();

@@ -6,6 +6,8 @@
 
 #include "boneXRayGeometry.h"
 
+#include <limits>
+
 namespace bone
 {
 /** \defgroup XRayConventions Views in the conventions of other programs
@@ -77,6 +79,32 @@ FromRtk(const RtkProjection & projection, const RtkGrid & grid);
 /** With pixel (0, 0) at the origin of the projection image: views of one size then make one stack of images. */
 void
 ToRtk(const XRayGeometry::View & view, RtkProjection & projection, RtkGrid & grid);
+
+/** An isocentric C-arm as DICOM describes it (PS3.3 C.8.7.5, XA Positioner). Angles are the detector's position about
+ * the patient, seen from the isocentre: (0, 0) is before the chest, with the source at the back (a PA beam); positive
+ * primary angles turn it to the patient's left (LAO, 90: at the left), negative ones to the right (RAO); positive
+ * secondary angles turn it to the head (cranial, CRA), negative ones to the feet (caudal, CAU). The patient's axes are
+ * those of physical space (LPS), as for a patient who lies head first and supine (HFS).
+ *
+ * Columns increase to the viewer's right and rows downwards, for a viewer at the detector who looks at the patient: at
+ * (0, 0) to the patient's left and to the feet. The ray through the isocentre is perpendicular to the detector and
+ * meets it at `centre`. */
+struct CArmView
+{
+  double             primary{ 0 };             ///< degrees, -180 to 180, LAO positive (0018,1510)
+  double             secondary{ 0 };           ///< degrees, -90 to 90, CRA positive (0018,1511)
+  double             sourceToIsocenter{ 700 }; ///< mm, DistanceSourceToPatient (0018,1111)
+  double             sourceToDetector{ 1000 }; ///< mm, DistanceSourceToDetector (0018,1110)
+  std::array<int, 2> size{ { 512, 512 } };     ///< columns, rows
+  Vector2            spacing{ 1, 1 };          ///< mm from column to column and row to row, at the detector
+  Vector3            isocenter{ 0, 0, 0 };
+  /** Pixel (column, row) that the isocentre projects to; NaN: the middle of the detector. */
+  Vector2 centre{ Vector2::Constant(std::numeric_limits<double>::quiet_NaN()) };
+};
+/** Refused: an angle out of its range, a distance that is not positive, a detector nearer to the source than the
+ * isocentre. */
+XRayGeometry::View
+FromCArm(const CArmView & view);
 /** \} */
 } // namespace bone
 

@@ -249,4 +249,38 @@ ToRtk(const XRayGeometry::View & view, RtkProjection & p, RtkGrid & grid)
   p.sourceOffsetX = source.x();
   p.sourceOffsetY = source.y();
 }
+
+XRayGeometry::View
+FromCArm(const CArmView & arm)
+{
+  RequirePositive("The distance from source to isocentre", arm.sourceToIsocenter);
+  RequirePositive("The distance from source to detector", arm.sourceToDetector);
+  if (!(arm.sourceToDetector >= arm.sourceToIsocenter))
+  {
+    itkGenericExceptionMacro("The detector is " << arm.sourceToDetector << " mm from the source and the isocentre "
+                                                << arm.sourceToIsocenter
+                                                << " mm: the isocentre must lie before the detector.");
+  }
+  if (!(std::abs(arm.primary) <= 180) || !(std::abs(arm.secondary) <= 90))
+  {
+    itkGenericExceptionMacro("The C-arm's angles are "
+                             << arm.primary << " and " << arm.secondary
+                             << " degrees; the primary must be from -180 to 180, the secondary from -90 to 90.");
+  }
+  const double p = arm.primary / perRadian, s = arm.secondary / perRadian;
+  // The detector's direction (sin p cos s, -cos p cos s, sin s), and its derivatives by the two angles.
+  const Vector3      toDetector(std::sin(p) * std::cos(s), -std::cos(p) * std::cos(s), std::sin(s));
+  XRayGeometry::View view;
+  view.detectorU = { std::cos(p), std::sin(p), 0 };
+  view.detectorV = { std::sin(p) * std::sin(s), -std::cos(p) * std::sin(s), -std::cos(s) };
+  view.source = arm.isocenter - arm.sourceToIsocenter * toDetector;
+  view.direction = toDetector;
+  view.size = arm.size;
+  view.spacing = arm.spacing;
+  const Vector2 centre =
+    arm.centre.array().isNaN().any() ? Vector2(0.5 * (arm.size[0] - 1), 0.5 * (arm.size[1] - 1)) : arm.centre;
+  view.detectorOrigin = view.source + arm.sourceToDetector * toDetector -
+                        centre.x() * view.spacing.x() * view.detectorU - centre.y() * view.spacing.y() * view.detectorV;
+  return Checked(view);
+}
 } // namespace bone

@@ -30,11 +30,10 @@ SignToLps(const json & markup)
 constexpr const char * NoteFormat = "layer %d, region %d, contour %d, slice %d";
 
 void
-ReadNote(const json & point, Polyline & polyline)
+ReadNote(const std::string & text, Polyline & polyline)
 {
-  const std::string text = point.contains("description") ? TextMember(point, "description") : std::string();
-  Contour           contour;
-  int               slice = -1;
+  Contour contour;
+  int     slice = -1;
   if (std::sscanf(text.c_str(), NoteFormat, &contour.layer, &contour.region, &contour.id, &slice) == 4 &&
       contour.layer >= 0 && contour.region >= 0 && contour.id >= 0)
   {
@@ -45,27 +44,22 @@ ReadNote(const json & point, Polyline & polyline)
   }
 }
 
+std::string
+OptionalText(const json & object, const char * name)
+{
+  return object.is_object() && object.contains(name) ? TextMember(object, name) : std::string();
+}
+
 Polyline
 ReadClosedCurve(const json & markup)
 {
-  const double sign = SignToLps(markup);
-  Polyline     polyline;
-  const json & points = Member(markup, "controlPoints");
-  if (!points.is_array())
+  Polyline polyline;
+  auto &   curve = polyline.contour.points;
+  for (const ControlPoint & point : ReadControlPoints(markup))
   {
-    Refuse("'controlPoints' must be a list");
+    ReadNote(point.description, polyline);
+    curve.push_back(point.position);
   }
-  for (const json & point : points)
-  {
-    if (point.is_object() && point.contains("positionStatus") && TextMember(point, "positionStatus") != "defined")
-    {
-      continue;
-    }
-    const Vector3 position = NumbersMember(point, "position", 3);
-    ReadNote(point, polyline);
-    polyline.contour.points.emplace_back(sign * position.x(), sign * position.y(), position.z());
-  }
-  auto & curve = polyline.contour.points;
   if (curve.size() > 1 && curve.front() == curve.back())
   {
     curve.pop_back();
@@ -78,18 +72,58 @@ ReadClosedCurve(const json & markup)
 }
 } // namespace
 
+const json &
+MarkupsOf(const json & document)
+{
+  const json & markups = Member(document, "markups");
+  if (!markups.is_array())
+  {
+    Refuse("'markups' must be a list");
+  }
+  return markups;
+}
+
+std::vector<ControlPoint>
+ReadControlPoints(const json & markup)
+{
+  const double sign = SignToLps(markup);
+  const json & points = Member(markup, "controlPoints");
+  if (!points.is_array())
+  {
+    Refuse("'controlPoints' must be a list");
+  }
+  std::vector<ControlPoint> placed;
+  for (const json & point : points)
+  {
+    const std::string status = OptionalText(point, "positionStatus");
+    if (status.empty() || status == "defined")
+    {
+      const Vector3 position = NumbersMember(point, "position", 3);
+      placed.push_back({ OptionalText(point, "label"),
+                         OptionalText(point, "description"),
+                         { sign * position.x(), sign * position.y(), position.z() } });
+    }
+  }
+  return placed;
+}
+
+std::string
+MarkupsText(json markups)
+{
+  const json document = { { "@schema",
+                            "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
+                            "Resources/Schema/markups-schema-v1.0.3.json#" },
+                          { "markups", std::move(markups) } };
+  return document.dump(1) + '\n';
+}
+
 std::vector<Polyline>
 ReadMarkups(const std::string & path)
 {
   const json document = ReadJsonFile(path);
   return NamingFile(path, [&] {
-    const json & markups = Member(document, "markups");
-    if (!markups.is_array())
-    {
-      Refuse("'markups' must be a list");
-    }
     std::vector<Polyline> polylines;
-    for (const json & markup : markups)
+    for (const json & markup : MarkupsOf(document))
     {
       const std::string type = TextMember(markup, "type");
       if (type != "ClosedCurve")
@@ -132,10 +166,6 @@ ToMarkups(const ContourStack & stack)
                           { "controlPoints", std::move(points) } });
     }
   }
-  const json document = { { "@schema",
-                            "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
-                            "Resources/Schema/markups-schema-v1.0.3.json#" },
-                          { "markups", std::move(markups) } };
-  return document.dump(1) + '\n';
+  return MarkupsText(std::move(markups));
 }
 } // namespace bone

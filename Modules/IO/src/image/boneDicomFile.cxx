@@ -15,6 +15,14 @@ namespace bone
 {
 namespace
 {
+/** How many there are; DCMTK leaves 0 where the file does not say. */
+int
+FramesOf(DcmDataset & data)
+{
+  Sint32 frames = 1;
+  return data.findAndGetSint32(DCM_NumberOfFrames, frames).good() ? frames : 1;
+}
+
 /** Bytes that the pixels of an image need without compression; 0 where the file does not say. */
 double
 BytesOfPixels(DcmDataset & data)
@@ -26,9 +34,7 @@ BytesOfPixels(DcmDataset & data)
     data.findAndGetUint16(key, value);
     bytes *= value;
   }
-  Sint32 frames = 1;
-  data.findAndGetSint32(DCM_NumberOfFrames, frames);
-  return bytes / 8.0 * frames;
+  return bytes / 8.0 * FramesOf(data);
 }
 
 std::string
@@ -107,13 +113,11 @@ ReadWholeDicomFile(const std::string & path)
   header.scout = Text(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
   Uint16 rows = 0;
   Uint16 columns = 0;
-  Sint32 frames = 1;
   data.findAndGetUint16(DCM_Rows, rows);
   data.findAndGetUint16(DCM_Columns, columns);
-  data.findAndGetSint32(DCM_NumberOfFrames, frames);
   header.rows = rows;
   header.columns = columns;
-  header.frames = frames;
+  header.frames = FramesOf(data);
   ReadPlace(data, header);
   return header;
 }
