@@ -143,6 +143,8 @@ main(int argc, char * argv[])
   app.add_option("--search-pixels", parameters.searchPixels);
   app.add_option("--picture", picture);
   app.add_flag("--local", local);
+  int only = -1;
+  app.add_option("--only", only);
   app.add_option("--pad", pad);
   CLI11_PARSE(app, argc, argv);
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(threads);
@@ -206,6 +208,10 @@ main(int argc, char * argv[])
     transform->SetRotation(rotation * degree * x, rotation * degree * y, rotation * degree * z);
     transform->SetTranslation(shift);
     const RigidPose start = RigidPose::FromTransform(*transform);
+    if (only >= 0 && i != only)
+    {
+      continue;
+    }
   
     const auto clock = std::chrono::steady_clock::now();
     const std::clock_t ticks = std::clock();

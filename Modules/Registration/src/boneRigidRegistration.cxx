@@ -7,6 +7,7 @@
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
 #include "bonePatchGradientCorrelation.h"
+#include "bonePrincipalModes.h"
 #include "boneRigidCost.h"
 
 #include <Eigen/Cholesky>
@@ -188,11 +189,29 @@ private:
     return std::sqrt(step.head<3>().squaredNorm() + m_Radius * m_Radius * step.tail<3>().squaredNorm());
   }
 
+  /** The pose at these coordinates of the box: translation from the start along the geometry's axes, rotation vector in
+   * the model's, each in units of half the box. */
+  RigidPose
+  FromBox(const Vector6 & coordinates) const
+  {
+    const Vector6 step = coordinates.cwiseProduct(m_Box);
+    RigidPose     pose = m_Initial.Moved((Vector6() << Vector3::Zero(), step.tail<3>()).finished());
+    pose.translation += step.head<3>();
+    return pose;
+  }
+
   /** The pose in the box that is nearest to this one, by coordinates. */
   RigidPose
   Bound(const RigidPose & pose) const
   {
-    return m_IsSearched ? m_Initial.Moved(m_Initial.StepTo(pose).cwiseMin(m_Box).cwiseMax(-m_Box)) : pose;
+    if (!m_IsSearched)
+    {
+      return pose;
+    }
+    Vector6 step = m_Initial.StepTo(pose);
+    step.head<3>() = pose.translation - m_Initial.translation;
+    const Vector6 inside = step.cwiseMin(m_Box).cwiseMax(-m_Box);
+    return inside == step ? pose : this->FromBox(inside.cwiseQuotient(m_Box.cwiseMax(1e-30)));
   }
 
   RigidPose
@@ -202,22 +221,22 @@ private:
     constexpr double     narrow = 0.01; // of the box
     const ProjectedLevel level(m_Means, execution.Silent());
     const auto           cost = this->MakeCost(m_Resolutions.front().pixels, level);
-    EvolutionStrategy    strategy(Vector6::Zero(),
-                               0.4,
-                               m_P.population,
-                               static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search));
+    const auto           seed = static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search);
+    // From the start, and, where that led astray, from elsewhere and with more poses.
+    const Vector6     mean = search == 0 ? Vector6(Vector6::Zero()) : Vector6(0.4 * SampleCoefficients(6, seed));
+    EvolutionStrategy strategy(mean.cwiseMin(1.0).cwiseMax(-1.0), 0.4, m_P.population * (2 + search) / 2, seed);
     while (strategy.GetGeneration() < generations && !strategy.IsConverged(narrow))
     {
       const Eigen::MatrixXd & candidates = strategy.Ask();
       Eigen::VectorXd         costs(candidates.cols());
       execution.Silent().For(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
         const auto k = static_cast<Eigen::Index>(i);
-        costs[k] = cost->Evaluate(m_Initial.Moved(candidates.col(k).cwiseProduct(m_Box)), execution.Silent());
+        costs[k] = cost->Evaluate(this->FromBox(candidates.col(k)), execution.Silent());
       });
       strategy.Tell(costs);
       execution.Report(static_cast<double>(strategy.GetGeneration()) / generations);
     }
-    return m_Initial.Moved(strategy.BestCandidate().cwiseProduct(m_Box));
+    return this->FromBox(strategy.BestCandidate());
   }
 
   RigidRegistrationResult
