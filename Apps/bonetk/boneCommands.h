@@ -47,6 +47,8 @@ AddTrainCommand(CLI::App & app, Action & action);
 void
 AddSampleCommand(CLI::App & app, Action & action);
 void
+AddRegisterCommand(CLI::App & app, Action & action);
+void
 AddValidateCommand(CLI::App & app, Action & action);
 void
 AddInfoCommand(CLI::App & app, Action & action);

@@ -64,6 +64,7 @@ ReadDecimalNumbers(CLI::App & app)
 {
   for (CLI::App * command : app.get_subcommands([](CLI::App *) { return true; }))
   {
+    ReadDecimalNumbers(*command);
     for (CLI::Option * option : command->get_options())
     {
       const std::string type = option->get_type_name();

@@ -102,7 +102,9 @@ AddParameterOption(CLI::App * command, const ParameterField & field, T & value)
   const std::string name = std::string("--") + field.option;
   if constexpr (std::is_same_v<T, bool>)
   {
-    return command->add_flag(name, value, field.help);
+    // What is on by itself needs a way to turn it off.
+    return value ? command->add_flag(name + ",!--no-" + field.option, value, std::string(field.help) + " (default)")
+                 : command->add_flag(name, value, field.help);
   }
   else if constexpr (std::is_enum_v<T> || std::is_arithmetic_v<T>)
   {

@@ -27,6 +27,11 @@ AddSharedOptions(CLI::App & app, bone::Session & session)
 {
   for (CLI::App * command : app.get_subcommands([](const CLI::App *) { return true; }))
   {
+    if (!command->get_subcommands([](const CLI::App *) { return true; }).empty())
+    {
+      AddSharedOptions(*command, session); // of the commands in a group
+      continue;
+    }
     command->add_flag(
       "-q,--quiet", session.quiet, "Print errors, and warnings that the result is not what was asked for, alone");
     command
@@ -72,6 +77,19 @@ NearestCommand(const CLI::App & app, const std::string & word)
   return nearest;
 }
 
+/** "drr", "register rigid": what was called, as far as it was parsed. */
+std::string
+NameOfChosen(const CLI::App & app)
+{
+  std::string name;
+  for (const CLI::App * command = &app; !command->get_subcommands().empty();)
+  {
+    command = command->get_subcommands().front();
+    name += (name.empty() ? "" : " ") + command->get_name();
+  }
+  return name;
+}
+
 /** Parses the command line. Returns true where there is something to do, else sets the exit code. */
 bool
 Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exitCode)
@@ -79,7 +97,7 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   try
   {
     app.parse(argc, argv);
-    session.command = app.get_subcommands().front()->get_name();
+    session.command = NameOfChosen(app);
     return true;
   }
   catch (const CLI::ParseError & error)
@@ -92,10 +110,7 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
       exitCode = Success;
       return false;
     }
-    for (const CLI::App * command : app.get_subcommands())
-    {
-      session.command = command->get_name();
-    }
+    session.command = NameOfChosen(app);
     const std::string nearest = session.command.empty() && argc > 1 ? NearestCommand(app, argv[1]) : "";
     if (!nearest.empty())
     {
@@ -177,6 +192,7 @@ main(int argc, char ** argv)
   bone::AddDrrCommand(app, action);
   bone::AddTrainCommand(app, action);
   bone::AddSampleCommand(app, action);
+  bone::AddRegisterCommand(app, action);
   bone::AddValidateCommand(app, action);
   bone::AddInfoCommand(app, action);
   AddSharedOptions(app, session);

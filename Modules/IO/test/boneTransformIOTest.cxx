@@ -1,0 +1,111 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include <Eigen/Eigenvalues> // in place of that of ITK's own, older Eigen
+#include <itkEuler3DTransform.h>
+
+#include "boneIOError.h"
+#include "boneTransformIO.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace
+{
+using Transform = itk::Euler3DTransform<double>;
+
+class TransformIO : public ::testing::Test
+{
+protected:
+  void
+  SetUp() override
+  {
+    m_Folder = std::filesystem::path(testing::TempDir()) / "boneTransformIOTest";
+    std::filesystem::remove_all(m_Folder);
+    std::filesystem::create_directories(m_Folder);
+  }
+  void
+  TearDown() override
+  {
+    std::filesystem::remove_all(m_Folder);
+  }
+  std::string
+  Path(const std::string & name) const
+  {
+    return (m_Folder / name).string();
+  }
+  std::string
+  Write(const std::string & name,
+        const std::string & type,
+        const std::string & parameters,
+        const std::string & fixed) const
+  {
+    std::ofstream(Path(name)) << "#Insight Transform File V1.0\n#Transform 0\nTransform: " << type
+                              << "\nParameters: " << parameters << "\nFixedParameters: " << fixed << "\n";
+    return Path(name);
+  }
+  static std::string
+  Refusal(const std::string & path)
+  {
+    try
+    {
+      bone::ReadRigidTransform(path);
+    }
+    catch (const bone::IOError & error)
+    {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path m_Folder;
+};
+
+TEST_F(TransformIO, ReadsWhatItWrote)
+{
+  auto                   written = Transform::New();
+  itk::Point<double, 3>  centre;
+  itk::Vector<double, 3> shift;
+  for (unsigned int i = 0; i < 3; ++i)
+  {
+    centre[i] = 10.0 + i;
+    shift[i] = -3.5 * i;
+  }
+  written->SetCenter(centre);
+  written->SetRotation(0.3, -0.2, 0.7);
+  written->SetTranslation(shift);
+  bone::WriteRigidTransform(*written, Path("a.tfm"));
+  const auto read = bone::ReadRigidTransform(Path("a.tfm"));
+  EXPECT_LT((read->TransformPoint(shift) - written->TransformPoint(shift)).GetNorm(), 1e-9);
+  EXPECT_LT((read->GetCenter() - centre).GetNorm(), 1e-12);
+}
+
+TEST_F(TransformIO, TakesRigidTransformsOfOtherKinds)
+{
+  const auto read =
+    bone::ReadRigidTransform(Write("slicer.tfm", "AffineTransform_double_3_3", "0 -1 0 1 0 0 0 0 1 5 6 7", "0 0 0"));
+  const itk::Point<double, 3> x(1.0);
+  EXPECT_NEAR(read->TransformPoint(x)[0], 4.0, 1e-9);
+  EXPECT_NEAR(read->TransformPoint(x)[1], 7.0, 1e-9);
+  EXPECT_NEAR(read->TransformPoint(x)[2], 8.0, 1e-9);
+}
+
+TEST_F(TransformIO, RefusesWhatIsNotRigid)
+{
+  using ::testing::HasSubstr;
+  EXPECT_THAT(Refusal(Path("none.tfm")), HasSubstr("none.tfm"));
+  EXPECT_THAT(Refusal(Write("scaled.tfm", "AffineTransform_double_3_3", "1 0 0 0 1 0 0 0 1.01 0 0 0", "0 0 0")),
+              HasSubstr("no rotation"));
+  EXPECT_THAT(Refusal(Write("mirror.tfm", "AffineTransform_double_3_3", "1 0 0 0 1 0 0 0 -1 0 0 0", "0 0 0")),
+              HasSubstr("mirrors"));
+  EXPECT_THAT(Refusal(Write("flat.tfm", "Euler2DTransform_double_2_2", "0.1 2 3", "0 0")),
+              HasSubstr("three dimensions"));
+  EXPECT_THAT(Refusal(Write("far.tfm", "Euler3DTransform_double_3_3", "0 0 0 1e300 0 0", "0 0 0 0")),
+              HasSubstr("that no bone has"));
+  std::ofstream(Path("text.tfm")) << "hello\n";
+  EXPECT_THAT(Refusal(Path("text.tfm")), HasSubstr("no ITK transform file"));
+}
+} // namespace

@@ -1,0 +1,157 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneRegistrationReport.h"
+
+#include "boneCanvas.h"
+#include "boneMeshRadiograph.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bone
+{
+namespace
+{
+template <typename TMatrix>
+nlohmann::json
+RowsOf(const TMatrix & matrix)
+{
+  nlohmann::json rows = nlohmann::json::array();
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r)
+  {
+    std::vector<double> row;
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c)
+    {
+      row.push_back(matrix(r, c));
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/** What black and white are: all but 1 % of the values at either end. */
+Window
+WindowOf(std::vector<float> values)
+{
+  values.erase(std::remove_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); }), values.end());
+  if (values.empty())
+  {
+    return {};
+  }
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) { return values[static_cast<std::size_t>(share * (values.size() - 1.0))]; };
+  return { at(0.01), std::max(at(0.99), at(0.01) + 1e-6f) };
+}
+
+/** Lines between pixels that see the model and neighbours that do not. */
+void
+DrawOutline(Canvas & canvas, const XRayGeometry::View & view, const std::vector<float> & chords, double scale)
+{
+  const Color red{ { 255, 80, 60 } };
+  const auto  sees = [&](int c, int r) {
+    return c >= 0 && r >= 0 && c < view.size[0] && r < view.size[1] &&
+           chords[static_cast<std::size_t>(r) * view.size[0] + c] > 0.0f;
+  };
+  for (int r = 0; r < view.size[1]; ++r)
+  {
+    for (int c = 0; c < view.size[0]; ++c)
+    {
+      const Vector2 corner = scale * Vector2(c, r);
+      if (sees(c, r) != sees(c - 1, r))
+      {
+        canvas.DrawLine(corner, corner + scale * Vector2(0, 1), red);
+      }
+      if (sees(c, r) != sees(c, r - 1))
+      {
+        canvas.DrawLine(corner, corner + scale * Vector2(1, 0), red);
+      }
+    }
+  }
+}
+
+/** The panel magnified, and with it its rows' true height. */
+Panel
+Magnify(const std::vector<float> & values, const XRayGeometry::View & view, int factor)
+{
+  Panel panel{ view.size[0] * factor, view.size[1] * factor, {} };
+  panel.values.resize(static_cast<std::size_t>(panel.columns) * panel.rows);
+  for (int r = 0; r < panel.rows; ++r)
+  {
+    for (int c = 0; c < panel.columns; ++c)
+    {
+      panel.At(c, r) = values[static_cast<std::size_t>(r / factor) * view.size[0] + c / factor];
+    }
+  }
+  return panel;
+}
+} // namespace
+
+nlohmann::json
+ReportRegistration(const RigidRegistrationResult & result)
+{
+  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
+  transform.topLeftCorner<3, 3>() = result.pose.rotation;
+  transform.topRightCorner<3, 1>() = result.pose.Apply(Vector3::Zero());
+  std::vector<double> deviations;
+  for (int k = 0; k < 6; ++k)
+  {
+    deviations.push_back(std::sqrt(std::max(0.0, result.covariance(k, k))) * (k < 3 ? 1.0 : 180.0 / std::acos(-1.0)));
+  }
+  const auto & centre = result.pose.centre;
+  return { { "converged", result.converged },
+           { "quality", ParameterText(result.quality) },
+           { "distinctness", result.distinctness },
+           { "transform", RowsOf(transform) },
+           { "centre", { centre.x(), centre.y(), centre.z() } },
+           { "covariance", RowsOf(result.covariance) },
+           { "standardDeviations", deviations },
+           { "cost", result.cost },
+           { "views", result.costs },
+           { "searches", result.searches } };
+}
+
+PictureImage::Pointer
+DrawRegistration(const RadiographView & xray, const MeshArrays & model, const RigidPose & pose)
+{
+  constexpr int      width = 512; // of a panel, about
+  const auto &       view = xray.view;
+  const int          factor = std::max(1, width / std::max(view.size[0], view.size[1]));
+  std::vector<float> drr(xray.GetNumberOfPixels());
+  std::vector<float> chords(xray.GetNumberOfPixels());
+  ProjectMesh(model.points, model, pose.ToModelSpace(view), {}, Execution(), drr.data());
+  MeshRadiographParameters ones;
+  ones.scale = 0.0;
+  ones.offset = 1.0;
+  ProjectMesh(model.points, model, pose.ToModelSpace(view), ones, Execution(), chords.data());
+
+  // The factor that leaves least, about the means where the model is seen.
+  double sums[5] = {};
+  for (std::size_t i = 0; i < drr.size(); ++i)
+  {
+    if (chords[i] > 0.0f && std::isfinite(xray.values[i]) && (xray.weights.empty() || xray.weights[i] > 0.0f))
+    {
+      const double x = xray.values[i];
+      const double g = drr[i];
+      const double terms[5] = { 1.0, x, g, x * g, g * g };
+      std::transform(terms, terms + 5, sums, sums, [](double term, double sum) { return sum + term; });
+    }
+  }
+  const double spread = sums[4] - sums[2] * sums[2] / std::max(1.0, sums[0]);
+  const double gain = spread > 0.0 ? (sums[3] - sums[1] * sums[2] / std::max(1.0, sums[0])) / spread : 0.0;
+  auto         rest = xray.values;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+  {
+    rest[i] -= static_cast<float>(gain * drr[i]);
+  }
+
+  const Window  window = WindowOf(xray.values);
+  const int     columns = view.size[0] * factor;
+  constexpr int gap = 8;
+  Canvas        canvas(2 * columns + gap, view.size[1] * factor);
+  canvas.DrawPanel(0, 0, Magnify(xray.values, view, factor), window);
+  canvas.DrawPanel(columns + gap, 0, Magnify(rest, view, factor), window);
+  DrawOutline(canvas, view, chords, factor);
+  return canvas.GetImage();
+}
+} // namespace bone
