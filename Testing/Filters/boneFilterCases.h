@@ -14,6 +14,8 @@
 #include "boneIntensityImageFilter.h"
 #include "boneNoiseImageFilter.h"
 #include "bonePhantomImageSource.h"
+#include "boneRadiographPreprocessFilter.h"
+#include "boneRigidRadiographRegistration.h"
 #include "boneStatisticalModelEstimator.h"
 #include "boneTetraSmoothingFilter.h"
 #include "boneTetraSwapFilter.h"
@@ -172,6 +174,23 @@ BONE_CASE(NoiseCase, NoiseImageFilter<CTImage>, "Primary", false, BONE_NOISE_PAR
 BONE_CASE(RegistrationCase, AtlasRegistrationFilter<>, "Standard", true, BONE_ATLAS_REGISTRATION_PARAMETERS, {
   f.SetStandard(missing ? nullptr : s.pipeline.GetQuality()->GetOutput());
   f.SetSubject(s.other);
+});
+BONE_CASE(PreprocessCase,
+          RadiographPreprocessFilter<CTImage>,
+          "Primary",
+          false,
+          BONE_RADIOGRAPH_PREPROCESS_PARAMETERS,
+          {
+            f.SetInput(missing ? nullptr : s.intensities.GetPointer());
+            f.SetValues(RadiographValues::Intensity);
+          });
+BONE_CASE(RigidCase, RigidRadiographRegistration<Mesh>, "Model", true, BONE_RIGID_RADIOGRAPH_PARAMETERS, {
+  f.SetModel(missing ? nullptr : s.pipeline.GetCollapse()->GetOutput());
+  f.SetView(0, s.pipeline.GetRadiograph(0)->GetOutput(), s.geometry);
+  f.SetSearches(1);
+  f.SetPopulation(8);
+  f.SetPixels(64);
+  f.SetSearchPixels(32);
 });
 BONE_CASE(EstimatorCase, StatisticalModelEstimator<>, "TrainingSet", false, BONE_STATISTICAL_MODEL_PARAMETERS, {
   f.RemoveSubjects();

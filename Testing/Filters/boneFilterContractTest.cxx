@@ -73,6 +73,14 @@ BytesOf(const itk::DataObject * output)
       }
     }
   }
+  else if (const auto * transform =
+             dynamic_cast<const RigidRadiographRegistration<Mesh>::DecoratedTransformType *>(output))
+  {
+    for (const double x : transform->Get()->GetParameters())
+    {
+      Append(bytes, std::array<double, 1>{ x });
+    }
+  }
   else if (const auto * image = dynamic_cast<const CTImage *>(output))
   {
     const std::size_t pixels = image->GetBufferedRegion().GetNumberOfPixels();
@@ -233,6 +241,8 @@ using Cases = testing::Types<PhantomCase,
                              IntensityCase,
                              NoiseCase,
                              RegistrationCase,
+                             PreprocessCase,
+                             RigidCase,
                              EstimatorCase>;
 TYPED_TEST_SUITE(Filter, Cases, );
 

@@ -7,7 +7,7 @@ import tempfile
 import numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from bonetk_testing import TestCase, bonetk, main, read_json, write_json
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
 
 SIZE = 128
 
@@ -83,6 +83,14 @@ class Register(TestCase):
         self.succeed(*self.command, "--initial", "start.tfm", "--threads", 1, "-o", "single")
         with open("r.tfm") as one, open("single.tfm") as other:
             self.assertEqual(one.read(), other.read())
+
+    def test_the_example_program(self):
+        code, out, err = run(os.path.join(EXAMPLES, "boneRigidRegistrationExample"), "m/model.hierarchy.json", "views.json",
+                             "x_V1.mha", "x_V2.mha", "pose.tfm")
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("quality ok", out)
+        self.succeed(*self.command, "--initial", "pose.tfm", "--search", 0, 0, "-o", "r")
+        self.assertLess(self.error("r.json"), 1.0)
 
     def test_a_mask_and_one_view(self):
         mask = numpy.ones((SIZE, SIZE), numpy.uint8)
