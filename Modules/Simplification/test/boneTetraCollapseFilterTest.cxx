@@ -130,6 +130,37 @@ TEST(TetraCollapseFilter, QualityDoesNotFallBelowTheFloorOrTheInput)
   EXPECT_GE(angle(filter->GetOutput()->GetMesh(1)->GetArrays()), std::min(before, std::acos(-1.0) / 120) - 1e-7);
 }
 
+TEST(TetraCollapseFilter, CorticalAndOtherCellsHaveFloorsOfTheirOwn)
+{
+  const auto mesh = Body(2);
+  const auto smallestAngle = [](const MeshArrays & m, bool cortical) {
+    double cosine = -1.0;
+    for (std::size_t t = 0; t < m.tetrahedra.size(); ++t)
+    {
+      const Id4 &  v = m.tetrahedra[t];
+      const auto & p = m.points;
+      if ((m.region[t] == Cortical) == cortical)
+      {
+        cosine = std::max(cosine, LargestDihedralCosine(p[v[0]], p[v[1]], p[v[2]], p[v[3]]));
+      }
+    }
+    return std::acos(cosine);
+  };
+  for (const bool cortical : { false, true })
+  {
+    auto filter = FilterType::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetLevels({ static_cast<IdType>(mesh.tetrahedra.size() / 6) });
+    filter->SetMaximumVolumeChange(1.0);
+    filter->SetMinimumCorticalDihedralAngle(cortical ? 0.2 : 0.0);
+    filter->SetMinimumDihedralAngle(cortical ? 0.0 : 0.2);
+    filter->Update();
+    const auto level = filter->GetOutput()->GetMesh(1)->GetArrays();
+    EXPECT_GE(smallestAngle(level, cortical), std::min(0.2, smallestAngle(mesh, cortical)) - 1e-7) << cortical;
+    EXPECT_LT(smallestAngle(level, !cortical), std::min(0.2, smallestAngle(mesh, !cortical))) << cortical;
+  }
+}
+
 TEST(TetraCollapseFilter, LinearDensityIsKeptExactly)
 {
   for (int degree : { 1, 2, 3 })
