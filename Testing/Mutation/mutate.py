@@ -196,8 +196,9 @@ class Copy:
         """Whether the tests pass, and the first that does not."""
         program = os.path.join(self.build, f"Modules/{name}" if name in TESTS else "Testing", f"bone{name}Tests")
         code, text = run([program, "--gtest_brief=0", "--gtest_fail_fast"], self.root, seconds, limited=True)
-        running = re.findall(r"\[ RUN +\] (\S+)", text)
-        return code == 0, f"{name}.{running[-1]}" if running else name
+        # Where a test crashes or takes too long it is the last that was begun.
+        failed = re.findall(r"\[  FAILED  \] (\S+?),? ", text) or re.findall(r"\[ RUN +\] (\S+)", text)[-1:]
+        return code == 0, f"{name}.{failed[0]}" if failed else name
 
     def prepare(self, name):
         """Builds and runs the tests without a fault, once."""
