@@ -319,6 +319,35 @@ TEST(InteriorDeformation, AffineMapsAreReproduced)
   EXPECT_LT(MeanDistance(interior.Deform(InteriorRule::EigenFrame, rigid, moved), turned), 1e-9);
 }
 
+TEST(DeformAdaptiveFocus, ProminentVerticesComeFirstWhereThereIsFocus)
+{
+  std::vector<IdType> id;
+  TriangleSurface     source = ExteriorSurface(MakeBall(4, { 1, 1 }, 10.0, 0.0, 1), id);
+  TriangleSurface     target = source;
+  for (std::size_t v = 0; v < source.points.size(); ++v)
+  {
+    Vector3 &x = source.points[v], &y = target.points[v];
+    x[2] *= 3;
+    y = x;
+    y[0] += std::max(0.0, x[2] - 15) * 0.4; // bent near one tip: no affine map
+  }
+  const DirectedSurface   directed(target);
+  AdaptiveFocusParameters parameters;
+  parameters.rings = { 16 };
+  parameters.iterations = 1;
+  const auto tipDistance = [&](double focus) {
+    parameters.focus = focus;
+    const auto points = DeformAdaptiveFocus(source, directed, parameters);
+    double     sum = 0;
+    for (std::size_t v = 0; v < points.size(); ++v)
+    {
+      sum += source.points[v][2] > 27 ? (points[v] - target.points[v]).norm() : 0.0;
+    }
+    return sum;
+  };
+  EXPECT_LT(tipDistance(2.0), 0.9 * tipDistance(0.0));
+}
+
 TEST(AttributeVectors, AreUnchangedByAffineMaps)
 {
   std::vector<IdType>   id;

@@ -53,6 +53,16 @@ TEST(CorticalProfile, AThinCortexIsMeasuredThroughItsBlur)
   }
 }
 
+TEST(CorticalProfile, WhatIsDenserFurtherInThanACortexReachesIsNotTheCortex)
+{
+  CorticalProfile profile = Profile(1.5, 0.2);
+  std::fill(profile.values.begin() + profile.lead + 70, profile.values.end(), 1800.0);
+  const CorticalEdges edges = FindCorticalEdges(profile, CorticalRules());
+  ASSERT_EQ(edges.kind, CorticalEdges::Kind::Found);
+  EXPECT_NEAR(edges.outer, 0.0, 0.02);
+  EXPECT_NEAR(edges.inner, 1.5, 0.02);
+}
+
 TEST(CorticalProfile, ABlurredLayersThicknessIsItsWidthWithoutBlurAndHasAFloor)
 {
   EXPECT_DOUBLE_EQ(ThicknessOfBlurredLayer(1.3, 0.0), 1.3);

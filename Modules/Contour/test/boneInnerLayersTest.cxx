@@ -139,5 +139,38 @@ TEST(BoneLayers, AroundAHoleTheEndostealContourIsParted)
     EXPECT_TRUE(PointInPolygon({ -10, 0 }, piece.endosteal[0]));
   }
 }
+
+TEST(BoneLayers, EndostealContoursMustLastForTheLengthWhereverTheBoneLies)
+{
+  // Dense to its middle but for five slices, one millimetre apart.
+  for (const double start : { 0.0, 1000.0, -1000.0 })
+  {
+    const PlaneSource planes = [start](double height, const Vector2 & low, const Vector2 & high) {
+      const bool hollow = std::abs(height - start - 9.0) < 2.5;
+      return ImageOf([hollow](const Vector2 & q) {
+        const double depth = 12.0 - q.norm();
+        return hollow ? depth : std::min(depth, 0.5 * Cortex);
+      })(height, low, high);
+    };
+    for (const double length : { 3.0, 8.0 })
+    {
+      std::vector<Section> sections;
+      for (int k = 0; k < 20; ++k)
+      {
+        sections.push_back({ start + k, { { Circle(12.0), {}, {}, {} } } });
+      }
+      ExtractionParameters parameters;
+      parameters.minimumLength = length;
+      parameters.thicknessSmoothing = 0.1; // each slice by itself
+      FindInnerLayers(sections, planes, Vector2(0.5, 0.5), parameters, Execution());
+      for (int k = 0; k < 20; ++k)
+      {
+        const bool expected = length < 4.0 && std::abs(k - 9) < 2.5;
+        EXPECT_EQ(sections[static_cast<std::size_t>(k)].pieces[0].endosteal.size(), expected ? 1U : 0U)
+          << start << ' ' << length << ' ' << k;
+      }
+    }
+  }
+}
 } // namespace
 } // namespace bone

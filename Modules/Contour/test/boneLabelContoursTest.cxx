@@ -118,6 +118,29 @@ TEST(LabelField, BetweenSlicesTheContourLiesBetweenTheirs)
   EXPECT_LT(areas[1], areas[2]);
 }
 
+TEST(Section, PolygonsOverlapWhereATipCrossesOneEdgeWhereverTheyBegin)
+{
+  Polygon       hexagon = Ellipse(10, 10, 6);
+  const Polygon tip = { { 7.0, 4.5 }, { 12.0, 6.0 }, { 10.5, 8.0 } }; // through the edge in the first quadrant
+  for (int k = 0; k < 6; ++k)
+  {
+    std::rotate(hexagon.begin(), hexagon.begin() + 1, hexagon.end());
+    Polygon turned = tip, apart = tip;
+    for (Vector2 & q : apart)
+    {
+      q += Vector2(3, 2);
+    }
+    for (int j = 0; j < 3; ++j)
+    {
+      std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+      std::rotate(apart.begin(), apart.begin() + 1, apart.end());
+      EXPECT_TRUE(PolygonsOverlap(hexagon, turned)) << k << ' ' << j;
+      EXPECT_TRUE(PolygonsOverlap(turned, hexagon)) << k << ' ' << j;
+      EXPECT_FALSE(PolygonsOverlap(hexagon, apart)) << k << ' ' << j;
+    }
+  }
+}
+
 TEST(Section, DropsWhatExistsOnOneSliceOnly)
 {
   std::vector<Section> sections;

@@ -128,5 +128,18 @@ TEST(PlaneField, SmoothingKeepsTheMeanAndALinearField)
   SmoothField(field, 1.0);
   EXPECT_NEAR(field.SampleCubic({ 0.3, -0.4 }), before, 1e-4);
 }
+
+TEST(PlaneField, SmoothingAddsItsVarianceToAQuadraticField)
+{
+  const Vector2 middle(0.3, -0.4);
+  for (const Vector2 & bend : { Vector2(1, 0), Vector2(0, 1), Vector2(2, 3) })
+  {
+    PlaneField field =
+      Field(Grid(40, 40, { 0.5, 0.8 }), [&](const Vector2 & q) { return bend.dot((q - middle).cwiseAbs2()); });
+    SmoothField(field, 1.2);
+    // Kernels end at three standard deviations, where 2.7 % of the variance is left.
+    EXPECT_NEAR(field.SampleCubic(middle), 1.2 * 1.2 * bend.sum(), 0.05 * bend.sum());
+  }
+}
 } // namespace
 } // namespace bone

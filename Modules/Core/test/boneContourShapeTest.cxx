@@ -79,6 +79,30 @@ TEST(ContourShape, LevelsHaveWhatLiesWithinAndHolesAreOutsideOfAll)
   }
 }
 
+TEST(ContourShape, InsideIsNegativeWithAnyNumberOfContoursBesideEachOther)
+{
+  for (int count = 1; count <= 3; ++count)
+  {
+    ContourStack::SliceContainer slices(2);
+    slices[1].origin = Vector3(0, 0, 2);
+    for (ContourSlice & slice : slices)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        slice.contours.push_back(Circle(slice.origin + Vector3(30 * i, 0, 0), 5, Region::Cortical));
+      }
+    }
+    auto stack = ContourStack::New();
+    stack->SetSlices(slices);
+    const ContourShape shape(*stack);
+    for (int i = 0; i < count; ++i)
+    {
+      EXPECT_NEAR(shape.Evaluate(1, { 30.0 * i + 3, 0, 1 })->distance, -2.0, 2e-3) << count;
+      EXPECT_NEAR(shape.Evaluate(1, { 30.0 * i + 7, 0, 1 })->distance, 2.0, 2e-3) << count;
+    }
+  }
+}
+
 TEST(ContourShape, SamplesLieOnTheContoursOfTheirLevelAndLookOut)
 {
   const ContourShape shape = Cone();

@@ -118,6 +118,23 @@ TEST_F(ModelIO, ShapeIsInTheStatismoLayout)
   EXPECT_EQ(basis[0][1], 0.0F);
 }
 
+/** Two runs of the same training write the same bytes, whenever they are. */
+TEST_F(ModelIO, NoObjectOfTheFileHasATime)
+{
+  const H5::H5File file(WriteModel(Path("atlas.h5")), H5F_ACC_RDONLY);
+  std::size_t      objects = 0;
+  const auto       visit = [](hid_t, const char * name, const H5O_info_t * info, void * count) -> herr_t {
+    ++*static_cast<std::size_t *>(count);
+    EXPECT_EQ(info->atime, 0) << name;
+    EXPECT_EQ(info->mtime, 0) << name;
+    EXPECT_EQ(info->ctime, 0) << name;
+    EXPECT_EQ(info->btime, 0) << name;
+    return 0;
+  };
+  H5Ovisit(file.getId(), H5_INDEX_NAME, H5_ITER_NATIVE, visit, &objects);
+  EXPECT_GT(objects, 10u);
+}
+
 TEST_F(ModelIO, RefusesWhatIsNoModel)
 {
   EXPECT_THROW(ReadStatisticalModel(Path("missing.h5")), IOError);

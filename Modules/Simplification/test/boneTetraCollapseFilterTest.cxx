@@ -130,6 +130,37 @@ TEST(TetraCollapseFilter, QualityDoesNotFallBelowTheFloorOrTheInput)
   EXPECT_GE(angle(filter->GetOutput()->GetMesh(1)->GetArrays()), std::min(before, std::acos(-1.0) / 120) - 1e-7);
 }
 
+TEST(TetraCollapseFilter, CorticalAndOtherCellsHaveFloorsOfTheirOwn)
+{
+  const auto mesh = Body(2);
+  const auto smallestAngle = [](const MeshArrays & m, bool cortical) {
+    double cosine = -1.0;
+    for (std::size_t t = 0; t < m.tetrahedra.size(); ++t)
+    {
+      const Id4 &  v = m.tetrahedra[t];
+      const auto & p = m.points;
+      if ((m.region[t] == Cortical) == cortical)
+      {
+        cosine = std::max(cosine, LargestDihedralCosine(p[v[0]], p[v[1]], p[v[2]], p[v[3]]));
+      }
+    }
+    return std::acos(cosine);
+  };
+  for (const bool cortical : { false, true })
+  {
+    auto filter = FilterType::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetLevels({ static_cast<IdType>(mesh.tetrahedra.size() / 6) });
+    filter->SetMaximumVolumeChange(1.0);
+    filter->SetMinimumCorticalDihedralAngle(cortical ? 0.2 : 0.0);
+    filter->SetMinimumDihedralAngle(cortical ? 0.0 : 0.2);
+    filter->Update();
+    const auto level = filter->GetOutput()->GetMesh(1)->GetArrays();
+    EXPECT_GE(smallestAngle(level, cortical), std::min(0.2, smallestAngle(mesh, cortical)) - 1e-7) << cortical;
+    EXPECT_LT(smallestAngle(level, !cortical), std::min(0.2, smallestAngle(mesh, !cortical))) << cortical;
+  }
+}
+
 TEST(TetraCollapseFilter, LinearDensityIsKeptExactly)
 {
   for (int degree : { 1, 2, 3 })
@@ -200,6 +231,53 @@ TEST(TetraCollapseFilter, RaisesDegreesWithinTheBoundOnTheDensityError)
   EXPECT_LE(raised.densityError, 3.0);
   EXPECT_LT(level.tetrahedra.size(), plain.mesh->GetArrays().tetrahedra.size());
   EXPECT_EQ(plain.stopReason, "density error bound");
+}
+
+TEST(TetraCollapseFilter, DensityWeightKeepsPointsWhereTheDensityIsRough)
+{
+  auto mesh = test::MakeBall(4, { 4 }, 14, 0.15, 3);
+  test::SetDensity(mesh, 1, [](const Vector3 & x) {
+    return x.x() < 0 ? 0.0 : 300 * std::sin(x.x()) * std::sin(2 * x.y()) * std::sin(3 * x.z());
+  });
+  const auto run = [&](double weight) {
+    auto filter = FilterType::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetLevels({ static_cast<IdType>(mesh.tetrahedra.size() / 4) });
+    filter->SetMaximumVolumeChange(1.0);
+    filter->SetDensityWeight(weight);
+    filter->Update();
+    return filter->GetOutput()->GetLevels()[1];
+  };
+  const auto roughShare = [](const MeshArrays & level) {
+    const auto rough =
+      std::count_if(level.points.begin(), level.points.end(), [](const Vector3 & x) { return x.x() > 0; });
+    return static_cast<double>(rough) / static_cast<double>(level.points.size());
+  };
+  const auto with = run(30.0), without = run(0.0);
+  EXPECT_NEAR(roughShare(without.mesh->GetArrays()), 0.5, 0.1);
+  EXPECT_GT(roughShare(with.mesh->GetArrays()), 0.6);
+  EXPECT_LT(with.densityError, 0.9 * without.densityError);
+}
+
+TEST(TetraCollapseFilter, VolumeWeightKeepsTheVolumesOfRegions)
+{
+  const auto mesh = Body(2);
+  const auto change = [&](double weight) {
+    auto filter = FilterType::New();
+    filter->SetInput(AsMesh(mesh));
+    filter->SetLevels({ static_cast<IdType>(mesh.tetrahedra.size() / 6) });
+    filter->SetMaximumVolumeChange(1.0);
+    filter->SetVolumeWeight(weight);
+    filter->Update();
+    const auto level = filter->GetOutput()->GetMesh(1)->GetArrays();
+    double     sum = 0.0;
+    for (int region = 1; region <= 3; ++region)
+    {
+      sum += std::abs(test::RegionVolume(level, region) / test::RegionVolume(mesh, region) - 1.0);
+    }
+    return sum;
+  };
+  EXPECT_LT(change(200.0), 0.5 * change(0.0));
 }
 
 TEST(SurfaceEnvelope, LargestDistanceOfAShiftedBodyIsTheShift)
