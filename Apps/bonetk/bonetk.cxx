@@ -79,7 +79,9 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   try
   {
     app.parse(argc, argv);
-    session.command = app.get_subcommands().front()->get_name();
+    const CLI::App * command = app.get_subcommands().front();
+    session.command = command->get_name();
+    session.inputs = bone::FindInputs(*command);
     return true;
   }
   catch (const CLI::ParseError & error)
@@ -127,21 +129,9 @@ Run(const bone::Action & action, bone::Session & session)
     session.Fail(std::string(error.what()) + "; see bonetk " + session.command + " --help");
     return BadUsage;
   }
-  catch (const itk::MemoryAllocationError &)
-  {
-    session.Fail("not enough memory for this input");
-  }
-  catch (const itk::ExceptionObject & error)
-  {
-    session.Fail(bone::ErrorLine(error));
-  }
-  catch (const std::bad_alloc &)
-  {
-    session.Fail("not enough memory for this input");
-  }
   catch (const std::exception & error)
   {
-    session.Fail(error.what());
+    session.Fail(error);
   }
   catch (...)
   {

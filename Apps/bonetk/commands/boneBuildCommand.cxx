@@ -283,8 +283,7 @@ BuildBones(const BuildOptions & options, const CTImage * ct, const std::vector<B
     }
     catch (const std::exception & problem)
     {
-      const auto * ofItk = dynamic_cast<const itk::ExceptionObject *>(&problem);
-      session.Fail(ofItk == nullptr ? problem.what() : ErrorLine(*ofItk));
+      session.Fail(problem);
       failed += (failures++ == 0 ? "" : ", ") + session.subject;
     }
     session.ForgetWarnings(common);
