@@ -112,9 +112,16 @@ ToViews(const json & object, const std::string & folder)
   grid.rowsDown = object.value("rowsDown", false);
   const std::string               name = TextMember(object, "rtk");
   std::vector<XRayGeometry::View> views;
-  for (const RtkProjection & projection : ReadRtkGeometry(name.front() == '/' ? name : folder + name))
+  try
   {
-    views.push_back(FromRtk(projection, grid));
+    for (const RtkProjection & projection : ReadRtkGeometry(name.rfind('/', 0) == 0 ? name : folder + name))
+    {
+      views.push_back(FromRtk(projection, grid));
+    }
+  }
+  catch (const IOError & error)
+  {
+    Refuse(ErrorLine(error)); // the name of the file that names it goes before it
   }
   return views;
 }

@@ -4,12 +4,17 @@
 #include "boneDicomFile.h"
 
 #include "boneIOError.h"
+#include "boneImageHeader.h"
 
 #include <dcmtk/config/osconfig.h>
 
 #include <dcmtk/dcmdata/dctk.h>
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace bone
 {
@@ -67,6 +72,47 @@ ReadPlace(DcmDataset & data, DicomHeader & header)
 }
 } // namespace
 
+namespace
+{
+/** Whether the elements of group 2, which come first in the file, are whole: GDCM stops the program where they are not.
+ */
+bool
+HasWholeMetaHeader(const std::string & path)
+{
+  constexpr std::uint16_t metaGroup = 2;
+  constexpr std::uint32_t undefined = 0xFFFFFFFF;
+  std::ifstream           stream(path, std::ios::binary);
+  const auto              size = static_cast<std::uint64_t>(std::filesystem::file_size(path));
+  std::uint64_t           at = 132; // after the preamble and its mark
+  std::array<char, 8>     head{};
+  while (stream.seekg(static_cast<std::streamoff>(at)) && stream.read(head.data(), head.size()))
+  {
+    if (Decode<std::uint16_t>(head.data(), false) != metaGroup)
+    {
+      return true;
+    }
+    static const std::set<std::string> longLength{ "OB", "OD", "OF", "OL", "OV", "OW",
+                                                   "SV", "UC", "UN", "UR", "UT", "UV" };
+    const std::string                  kind(&head[4], 2);
+    std::uint32_t                      length = Decode<std::uint16_t>(&head[6], false);
+    at += head.size();
+    if (longLength.count(kind) > 0)
+    {
+      std::array<char, 4> more{};
+      stream.read(more.data(), more.size());
+      length = Decode<std::uint32_t>(more.data(), false);
+      at += more.size();
+    }
+    at += length;
+    if (kind == "SQ" || length == undefined || at > size)
+    {
+      return false;
+    }
+  }
+  return false;
+}
+} // namespace
+
 bool
 IsDicomFile(const std::string & path)
 {
@@ -81,6 +127,10 @@ DicomHeader
 ReadWholeDicomFile(const std::string & path)
 {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  if (IsDicomFile(path) && !HasWholeMetaHeader(path))
+  {
+    throw IOError(path, "is a DICOM file whose header is damaged; copy it again from where it came");
+  }
   DcmFileFormat     file;
   const OFCondition read = file.loadFile(path.c_str());
   if (read.bad())

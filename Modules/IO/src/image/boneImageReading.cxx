@@ -60,7 +60,11 @@ OpenImage(const std::string & path)
                     "its axes are not at right angles (a sheared direction in the header): resample it to an "
                     "orthogonal grid, or correct the header's sform and qform");
     }
-    throw IOError(path, "is no readable image: " + text);
+    throw IOError(path, "is no readable image: its header is damaged, or of a form that is not known");
+  }
+  if (io->GetComponentType() == itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE)
+  {
+    throw IOError(path, "is no readable image: its header names no known kind of number for the voxels");
   }
   for (unsigned int d = 3; d < io->GetNumberOfDimensions(); ++d)
   {
@@ -127,9 +131,9 @@ LoadImage(const std::string & path, itk::ImageIOBase * io)
   {
     throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
   }
-  catch (const itk::ExceptionObject & error)
+  catch (const itk::ExceptionObject &)
   {
-    throw IOError(path, "is no readable image: " + ErrorLine(error));
+    throw IOError(path, "is no readable image: its voxels are damaged, or compressed in a way that is not known");
   }
   typename TImage::Pointer image = reader->GetOutput();
   image->DisconnectPipeline();
