@@ -196,9 +196,10 @@ Session::Fail(const std::exception & error)
   if (dynamic_cast<const IOError *>(&error) == nullptr && std::none_of(inputs.begin(), inputs.end(), named))
   {
     std::string names;
-    for (const std::string & input : inputs)
+    for (auto input = inputs.begin(); input != inputs.end(); ++input)
     {
-      names += (names.empty() ? "" : ", ") + input;
+      const bool again = std::find(inputs.begin(), input, *input) != input; // as a CT may be its own label map
+      names += again ? "" : (names.empty() ? "" : ", ") + *input;
     }
     message = names + (names.empty() ? "" : ": ") + message;
   }

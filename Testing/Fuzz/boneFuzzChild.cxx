@@ -141,7 +141,7 @@ FindMessageFault(const std::string & message)
 {
   constexpr std::size_t   longest = 500;
   static const std::regex internals(
-    R"((0x[0-9a-f]{6}|[a-z]+\.exception|\.(cxx|hxx|cpp|cc|h):|\bitk[A-Z:]|\bvtk[A-Z]|\bgdcm|\bGDCM|\bDCMTK|\bDcm[A-Z])"
+    R"((\b0x[0-9a-f]{6}|[a-z]+\.exception|\.(cxx|hxx|cpp|cc|h):|\bitk[A-Z:]|\bvtk[A-Z]|\bgdcm|\bGDCM|\bDCMTK|\bDcm[A-Z])"
     R"(|\bH5[A-Z]|HDF5|MetaIO|MetaImage:|nifti_|\bstd::|bad_alloc|basic_string|vector::|stod|stoi|\b[GS]et[A-Z][a-z]+)"
     R"(|Determinant|Failed to allocate|NULL|ITK ERROR|Exception))");
   if (message.empty())

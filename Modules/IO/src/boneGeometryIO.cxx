@@ -110,11 +110,11 @@ ToViews(const json & object, const std::string & folder)
     Refuse("'rowsDown' must be true or false");
   }
   grid.rowsDown = object.value("rowsDown", false);
-  const std::string               name = TextMember(object, "rtk");
+  const std::string               name = FileMember(object, "rtk");
   std::vector<XRayGeometry::View> views;
   try
   {
-    for (const RtkProjection & projection : ReadRtkGeometry(name.rfind('/', 0) == 0 ? name : folder + name))
+    for (const RtkProjection & projection : ReadRtkGeometry(name.front() == '/' ? name : folder + name))
     {
       views.push_back(FromRtk(projection, grid));
     }

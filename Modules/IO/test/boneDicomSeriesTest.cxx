@@ -100,6 +100,22 @@ TEST_F(DicomSeriesTest, RefusesASliceThatIsCutShort)
   }
 }
 
+TEST_F(DicomSeriesTest, RefusesAMetaHeaderThatGdcmCannotBear)
+{
+  WriteSlice(Path("0.dcm"), 10, 0, 0, "1");
+  const std::string     whole = ReadText("0.dcm");
+  constexpr std::size_t second = 132 + 12; // (0002,0001) OB, after the group's length
+  ASSERT_EQ(whole.substr(second + 4, 2), "OB");
+  for (const auto & [at, bytes] : { std::pair<std::size_t, std::string>{ second + 4, "SQ" },
+                                    { second + 8, "\xff\xff\xff\xff" },
+                                    { second + 8, "\xff\xff\xff\x0f" } })
+  {
+    std::string damaged = whole;
+    WriteText("0.dcm", damaged.replace(at, bytes.size(), bytes));
+    EXPECT_THAT(ErrorOf([&] { ReadRadiograph(Path("0.dcm")); }), HasSubstr("0.dcm: is a DICOM file that is cut short"));
+  }
+}
+
 TEST_F(DicomSeriesTest, RefusesATiltedGantry)
 {
   for (int k = 0; k < 5; ++k)

@@ -122,6 +122,10 @@ ReadSubjectList(const std::string & path)
   {
     ++number;
     line = Trim(line);
+    if (std::any_of(line.begin(), line.end(), [](unsigned char c) { return c < ' ' && c != '\t'; }))
+    {
+      throw IOError(path, "line " + std::to_string(number) + " is no text");
+    }
     if (line.empty() || line[0] == '#')
     {
       continue;

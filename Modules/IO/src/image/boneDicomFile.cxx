@@ -129,7 +129,7 @@ ReadWholeDicomFile(const std::string & path)
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   if (IsDicomFile(path) && !HasWholeMetaHeader(path))
   {
-    throw IOError(path, "is a DICOM file whose header is damaged; copy it again from where it came");
+    throw IOError(path, "is a DICOM file that is cut short or damaged, in its first part; copy it again from where it came");
   }
   DcmFileFormat     file;
   const OFCondition read = file.loadFile(path.c_str());

@@ -65,7 +65,8 @@ RequireNumbers(const std::string &                        path,
       throw IOError(path, "is no readable image: its header's '" + name + "' holds " + wild);
     }
     const bool dimensions = name == "NDims" || name == "dimension";
-    if (dimensions && !(std::strtod(text.c_str(), nullptr) <= mostDimensions))
+    const double count = std::strtod(text.c_str(), nullptr);
+    if (dimensions && !(count >= 1.0 && count <= mostDimensions))
     {
       throw IOError(path, "is no image of three dimensions: its header's '" + name + "' is " + text);
     }
