@@ -139,7 +139,7 @@ RunProgram(const std::vector<std::string> & command, const std::string & folder,
 std::string
 FindMessageFault(const std::string & message)
 {
-  constexpr std::size_t   longest = 500;
+  constexpr std::size_t   longest = 1000; // a list of twenty labels
   static const std::regex internals(
     R"((\b0x[0-9a-f]{6}|[a-z]+\.exception|\.(cxx|hxx|cpp|cc|h):|\bitk[A-Z:]|\bvtk[A-Z]|\bgdcm|\bGDCM|\bDCMTK|\bDcm[A-Z])"
     R"(|\bH5[A-Z]|HDF5|MetaIO|MetaImage:|nifti_|\bstd::|bad_alloc|basic_string|vector::|stod|stoi|\b[GS]et[A-Z][a-z]+)"

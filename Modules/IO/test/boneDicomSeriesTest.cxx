@@ -116,6 +116,20 @@ TEST_F(DicomSeriesTest, RefusesAMetaHeaderThatGdcmCannotBear)
   }
 }
 
+TEST_F(DicomSeriesTest, RefusesPixelsThatGdcmCannotBear)
+{
+  WriteSlice(Path("0.dcm"), 10, 0, 0, "1");
+  const std::string whole = ReadText("0.dcm");
+  for (const char element : { '\x02', '\x00', '\x01' })
+  {
+    const std::string tag = std::string("\x28\x00", 2) + element + (element == '\x02' ? '\x00' : '\x01');
+    ASSERT_NE(whole.find(tag), std::string::npos);
+    std::string damaged = whole;
+    WriteText("0.dcm", damaged.replace(whole.find(tag) + 8, 2, "\x2d\x01"));
+    EXPECT_THAT(ErrorOf([&] { ReadRadiograph(Path("0.dcm")); }), HasSubstr("0.dcm: is a DICOM"));
+  }
+}
+
 TEST_F(DicomSeriesTest, RefusesATiltedGantry)
 {
   for (int k = 0; k < 5; ++k)

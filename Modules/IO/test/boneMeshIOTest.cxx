@@ -209,6 +209,10 @@ TEST_F(MeshIOTest, RefusesCountsThatTheFileCannotHold)
   // The number of blocks of a compressed array, the first eight bytes of its text.
   EXPECT_THAT(error("AQAAAAAAAAA", "AQAAAAAAAH8"), HasSubstr("m.vtu: is "));
   EXPECT_THAT(error("AQAAAAAAAAAA", "AQAAAAAAAAAA////////"), HasSubstr("m.vtu: is "));
+  EXPECT_THAT(error("AQAAAAAAAAAAgAAAAAAAA", "AQAAAAAAAAAAAAAAAAAAA"), HasSubstr("m.vtu: is ")); // their size
+  std::string vectors = good; // an array that has elements within
+  vectors.replace(good.find("AQAAAAAAAAAA", good.find("Name=\"Points\"")), 10, "AQAAAAAAAUA");
+  EXPECT_THAT(ErrorOfReading(vectors), HasSubstr("m.vtu: is "));
 }
 
 TEST_F(MeshIOTest, RefusesCellsThatAreNoLinearTetrahedraAndSaysWhich)

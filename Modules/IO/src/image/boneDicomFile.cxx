@@ -36,6 +36,27 @@ BytesOfPixels(DcmDataset & data)
   return bytes / 8.0 * frames;
 }
 
+/** Throws where GDCM would stop the program: more samples a pixel than colours have, or bits that are not there. */
+void
+RequireKnownPixels(DcmDataset & data, const std::string & path)
+{
+  const auto number = [&data](const DcmTagKey & key, int otherwise) {
+    Uint16 value = 0;
+    return data.findAndGetUint16(key, value).good() ? static_cast<int>(value) : otherwise;
+  };
+  const int samples = number(DCM_SamplesPerPixel, 1);
+  const int allocated = number(DCM_BitsAllocated, 16);
+  const int stored = number(DCM_BitsStored, allocated);
+  const int high = number(DCM_HighBit, stored - 1);
+  if (samples < 1 || samples > 4 || allocated < 1 || allocated > 64 || stored < 1 || stored > allocated || high < 0 ||
+      high >= allocated)
+  {
+    throw IOError(path,
+                  "is a DICOM file that is damaged: it says that pixels have " + std::to_string(samples) +
+                    " samples, and " + std::to_string(stored) + " of " + std::to_string(allocated) + " bits");
+  }
+}
+
 std::string
 Text(DcmDataset & data, const DcmTagKey & key)
 {
@@ -129,7 +150,8 @@ ReadWholeDicomFile(const std::string & path)
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
   if (IsDicomFile(path) && !HasWholeMetaHeader(path))
   {
-    throw IOError(path, "is a DICOM file that is cut short or damaged, in its first part; copy it again from where it came");
+    throw IOError(path,
+                  "is a DICOM file that is cut short or damaged, in its first part; copy it again from where it came");
   }
   DcmFileFormat     file;
   const OFCondition read = file.loadFile(path.c_str());
@@ -148,6 +170,7 @@ ReadWholeDicomFile(const std::string & path)
   {
     throw IOError(path, "is a DICOM image whose pixels are not all there; copy it again from where it came");
   }
+  RequireKnownPixels(data, path);
   header.path = path;
   header.series = Text(data, DCM_SeriesInstanceUID);
   header.number = Text(data, DCM_SeriesNumber);

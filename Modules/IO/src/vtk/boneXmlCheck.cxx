@@ -82,11 +82,14 @@ protected:
     {
       this->Refuse(Say("has elements nested more than ", Deepest, " levels deep"));
     }
-    m_Array = std::strcmp(name, "DataArray") == 0;
-    m_Binary = false;
+    if (std::strcmp(name, "DataArray") == 0)
+    {
+      m_Array = m_Depth; // within, there may be elements on it
+      m_Binary = false;
+      m_Text.clear();
+      m_Letters = 0.0;
+    }
     m_Entries = std::strcmp(name, "Piece") == 0 ? 0.0 : m_Entries;
-    m_Text.clear();
-    m_Letters = 0.0;
     for (; attributes[0] != nullptr && attributes[1] != nullptr; attributes += 2)
     {
       this->TakeAttribute(name, attributes[0], attributes[1]);
@@ -95,17 +98,17 @@ protected:
   void
   EndElement(const char *) override
   {
-    --m_Depth;
-    if (m_Array && m_Binary)
+    if (m_Depth == m_Array && m_Binary)
     {
       this->CheckBinary();
     }
-    m_Array = false;
+    m_Array = m_Depth == m_Array ? NoDepth : m_Array;
+    --m_Depth;
   }
   void
   CharacterDataHandler(const char * text, int length) override
   {
-    for (int i = 0; m_Array && i < length; ++i)
+    for (int i = 0; m_Depth == m_Array && i < length; ++i)
     {
       if (static_cast<unsigned char>(text[i]) > ' ')
       {
@@ -125,6 +128,7 @@ protected:
 
 private:
   static constexpr std::size_t LongestHeader = std::size_t{ 1 } << 20;
+  static constexpr int         NoDepth = -1;
 
   void
   Refuse(const std::string & problem)
@@ -140,7 +144,8 @@ private:
     m_BigEndian = name == "byte_order" ? value == "BigEndian" : m_BigEndian;
     m_Compressed = m_Compressed || (name == "compressor" && !value.empty());
     m_Binary = m_Binary || (name == "format" && value == "binary");
-    if (name.rfind("NumberOf", 0) != 0)
+    const bool components = name == "NumberOfComponents" || name == "length"; // that of a list of numbers on an array
+    if (!components && name.rfind("NumberOf", 0) != 0)
     {
       return;
     }
@@ -148,7 +153,6 @@ private:
     const auto parsed = std::from_chars(value.data(), value.data() + value.size(), number);
     const bool whole = parsed.ec == std::errc() && parsed.ptr == value.data() + value.size() && number >= 0.0 &&
                        number == std::floor(number);
-    const bool components = name == "NumberOfComponents";
     m_Entries = components ? m_Entries : std::max(m_Entries, number);
     if (!whole || (components && number > mostComponents) ||
         (components ? number * m_Entries : number) * sizeof(double) > m_Size * MostOfByte)
@@ -189,7 +193,7 @@ private:
       }
       const double last = this->Word(header, 2);
       const double plain = last > 0.0 && blocks > 0.0 ? (blocks - 1.0) * block + last : blocks * block;
-      if (!(plain <= MostOfByte * stored))
+      if (!(plain <= MostOfByte * stored) || (blocks > 0.0 && !(block > 0.0))) // VTK divides by the block's size
       {
         this->Refuse("is damaged: an array holds more than its bytes can be decompressed to");
       }
@@ -207,7 +211,7 @@ private:
   double      m_Entries{ 0.0 }; ///< the most that an array of the piece may have
   std::size_t m_WordSize{ 4 };
   int         m_Depth{ 0 };
-  bool        m_Array{ false };
+  int         m_Array{ NoDepth }; ///< depth of the array
   bool        m_Binary{ false };
   bool        m_Compressed{ false };
   bool        m_BigEndian{ false };
