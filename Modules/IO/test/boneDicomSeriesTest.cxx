@@ -107,6 +107,7 @@ TEST_F(DicomSeriesTest, RefusesAMetaHeaderThatGdcmCannotBear)
   constexpr std::size_t second = 132 + 12; // (0002,0001) OB, after the group's length
   ASSERT_EQ(whole.substr(second + 4, 2), "OB");
   for (const auto & [at, bytes] : { std::pair<std::size_t, std::string>{ second + 4, "SQ" },
+                                    { second + 4, "Ob" },
                                     { second + 8, "\xff\xff\xff\xff" },
                                     { second + 8, "\xff\xff\xff\x0f" } })
   {

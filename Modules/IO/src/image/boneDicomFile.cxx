@@ -114,6 +114,8 @@ HasWholeMetaHeader(const std::string & path)
     }
     static const std::set<std::string> longLength{ "OB", "OD", "OF", "OL", "OV", "OW",
                                                    "SV", "UC", "UN", "UR", "UT", "UV" };
+    static const std::set<std::string> shortLength{ "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FD", "FL", "IS", "LO",
+                                                    "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US" };
     const std::string                  kind(&head[4], 2);
     std::uint32_t                      length = Decode<std::uint16_t>(&head[6], false);
     at += head.size();
@@ -125,7 +127,7 @@ HasWholeMetaHeader(const std::string & path)
       at += more.size();
     }
     at += length;
-    if (kind == "SQ" || length == undefined || at > size)
+    if (longLength.count(kind) + shortLength.count(kind) == 0 || length == undefined || at > size)
     {
       return false;
     }
