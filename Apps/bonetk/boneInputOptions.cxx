@@ -124,7 +124,8 @@ ChooseNamed(const LabelFile & file, const LabelOptions & options)
     {
       throw UsageError(options.file + ": " + ErrorLine(error) + ". Choose one with --label");
     }
-    throw IOError(options.file, ErrorLine(error));
+    const std::string table = options.names.empty() ? "" : " with the names of " + options.names;
+    throw IOError(options.file + table, ErrorLine(error));
   }
 }
 
@@ -154,16 +155,9 @@ BringToGrid(const LabelImage * labels, const itk::ImageBase<3> * ct, const std::
   {
     return PutOnGrid(labels, ct);
   }
-  try
-  {
-    LabelImage::Pointer image = ResampleToGrid(labels, ct);
-    session.Warn(path + " is not on the CT's grid: each voxel of the CT takes the label of the nearest one.");
-    return image;
-  }
-  catch (const itk::ExceptionObject & error)
-  {
-    throw IOError(path, ErrorLine(error));
-  }
+  LabelImage::Pointer image = ResampleToGrid(labels, ct); // what it throws is about both files
+  session.Warn(path + " is not on the CT's grid: each voxel of the CT takes the label of the nearest one.");
+  return image;
 }
 
 bool

@@ -80,6 +80,28 @@ ReadDecimalNumbers(CLI::App & app)
   }
 }
 
+std::vector<std::string>
+FindInputs(const CLI::App & command)
+{
+  static const std::regex  output("output|write-.*|save-.*|report|registered");
+  std::vector<std::string> files;
+  for (const CLI::Option * option : command.get_options())
+  {
+    const auto & names = option->get_lnames();
+    const bool   writes =
+      std::any_of(names.begin(), names.end(), [](const std::string & name) { return std::regex_match(name, output); });
+    for (const std::string & text : writes ? std::vector<std::string>() : option->results())
+    {
+      std::error_code error;
+      if (std::filesystem::exists(text, error))
+      {
+        files.push_back(text);
+      }
+    }
+  }
+  return files;
+}
+
 CLI::Validator
 Positive()
 {

@@ -31,6 +31,11 @@ Between(double lower, double upper);
 void
 ReadDecimalNumbers(CLI::App & app);
 
+/** The files and folders that a parsed command reads: what its options name that is there, but for those that say where
+ * to write. */
+std::vector<std::string>
+FindInputs(const CLI::App & command);
+
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void
 AddAxisOption(CLI::App * command, unsigned int & axis);

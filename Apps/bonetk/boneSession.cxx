@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <regex>
 
 #include <fcntl.h>
@@ -129,7 +130,7 @@ Session::Finish() const
 {
   if (m_PrintError != 0 && m_PrintError != EPIPE)
   {
-    throw std::runtime_error(std::string("cannot write to standard output: ") + std::strerror(m_PrintError));
+    throw IOError("standard output", std::string("cannot write: ") + std::strerror(m_PrintError));
   }
 }
 
@@ -170,7 +171,7 @@ Session::Warn(const std::string & message, bool shown)
   if (shown)
   {
     this->ClearProgress();
-    this->WriteError(this->Heading() + "warning: " + message + '\n');
+    this->WriteError(OneLine(this->Heading() + "warning: " + message) + '\n');
   }
 }
 
@@ -178,9 +179,31 @@ void
 Session::Fail(const std::string & message)
 {
   this->ClearProgress();
-  std::string line = message;
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  this->WriteError(this->Heading() + line + '\n');
+  this->WriteError(OneLine(this->Heading() + message) + '\n');
+}
+
+void
+Session::Fail(const std::exception & error)
+{
+  const auto * ofItk = dynamic_cast<const itk::ExceptionObject *>(&error);
+  std::string  message = ofItk == nullptr ? error.what() : ErrorLine(*ofItk);
+  if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ||
+      dynamic_cast<const itk::MemoryAllocationError *>(&error) != nullptr)
+  {
+    message = "not enough memory for this input";
+  }
+  const auto named = [&message](const std::string & input) { return message.find(input) != std::string::npos; };
+  if (dynamic_cast<const IOError *>(&error) == nullptr && std::none_of(inputs.begin(), inputs.end(), named))
+  {
+    std::string names;
+    for (auto input = inputs.begin(); input != inputs.end(); ++input)
+    {
+      const bool again = std::find(inputs.begin(), input, *input) != input; // as a CT may be its own label map
+      names += again ? "" : (names.empty() ? "" : ", ") + *input;
+    }
+    message = names + (names.empty() ? "" : ": ") + message;
+  }
+  this->Fail(message);
 }
 
 void

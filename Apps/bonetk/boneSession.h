@@ -7,6 +7,7 @@
 #include <itkProcessObject.h>
 
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -18,8 +19,8 @@ namespace bone
  *
  * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
  * errors and warnings that the result is not what was asked for. Warnings of ITK filters become lines of this session
- * too. What the libraries below ITK print by themselves reaches nobody: while a session lives, only it has the process's
- * standard streams. */
+ * too. What the libraries below ITK print by themselves reaches nobody: while a session lives, only it has the
+ * process's standard streams. */
 class Session
 {
 public:
@@ -34,8 +35,9 @@ public:
   bool quiet{ false };
   int  threads{ 0 }; ///< 0: all processors
   /** \} */
-  std::string command;
-  std::string subject; ///< of several that the command works on; warnings and errors name it
+  std::string              command;
+  std::vector<std::string> inputs;  ///< files that the command line names
+  std::string              subject; ///< of several that the command works on; warnings and errors name it
 
   /** Text for standard output. */
   void
@@ -52,6 +54,11 @@ public:
   /** "bonetk COMMAND: message" on standard error, quiet or not. */
   void
   Fail(const std::string & message);
+
+  /** The same for an error. The stages do not know files: what names none of the inputs gets their names put before it.
+   */
+  void
+  Fail(const std::exception & error);
 
   /** What --help or --version asked for, quiet or not. */
   void

@@ -77,15 +77,26 @@ NearestCommand(const CLI::App & app, const std::string & word)
   return nearest;
 }
 
-/** "drr", "register rigid": what was called, as far as it was parsed. */
+/** What was called, as far as it was parsed: the command, of a group the one in it. */
+const CLI::App &
+ChosenCommand(const CLI::App & app)
+{
+  const CLI::App * command = &app;
+  while (!command->get_subcommands().empty())
+  {
+    command = command->get_subcommands().front();
+  }
+  return *command;
+}
+
+/** "drr", "register rigid"; empty where no command was called. */
 std::string
 NameOfChosen(const CLI::App & app)
 {
   std::string name;
-  for (const CLI::App * command = &app; !command->get_subcommands().empty();)
+  for (const CLI::App * command = &ChosenCommand(app); command != &app; command = command->get_parent())
   {
-    command = command->get_subcommands().front();
-    name += (name.empty() ? "" : " ") + command->get_name();
+    name = command->get_name() + (name.empty() ? "" : " ") + name;
   }
   return name;
 }
@@ -98,6 +109,7 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   {
     app.parse(argc, argv);
     session.command = NameOfChosen(app);
+    session.inputs = bone::FindInputs(ChosenCommand(app));
     return true;
   }
   catch (const CLI::ParseError & error)
@@ -142,21 +154,9 @@ Run(const bone::Action & action, bone::Session & session)
     session.Fail(std::string(error.what()) + "; see bonetk " + session.command + " --help");
     return BadUsage;
   }
-  catch (const itk::MemoryAllocationError &)
-  {
-    session.Fail("not enough memory for this input");
-  }
-  catch (const itk::ExceptionObject & error)
-  {
-    session.Fail(bone::ErrorLine(error));
-  }
-  catch (const std::bad_alloc &)
-  {
-    session.Fail("not enough memory for this input");
-  }
   catch (const std::exception & error)
   {
-    session.Fail(error.what());
+    session.Fail(error);
   }
   catch (...)
   {

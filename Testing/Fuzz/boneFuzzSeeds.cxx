@@ -14,13 +14,16 @@
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
 #include "boneStatisticalModelEstimator.h"
+#include "boneTestStructures.h"
 
 #include <Eigen/Eigenvalues> // stands for the older one of ITK's own that its image formats bring
 
 #include <itkGDCMImageIO.h>
 #include <itkImageFileWriter.h>
+#include <itkMath.h>
 #include <itkMetaDataObject.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -65,50 +68,78 @@ WriteText(const std::string & path, const std::string & text)
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/** Two overlapping segments of 3D Slicer. */
+/** Two overlapping segments of 3D Slicer: the ball, and its half. */
 void
-WriteSegments(const std::string & path)
+WriteSegments(const LabelImage * labels, const std::string & path)
 {
-  std::string text = "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 6 5 4\n"
-                     "space directions: none (1,0,0) (0,1,0) (0,0,2)\nkinds: list domain domain domain\n"
+  std::string text = "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 18 18 18\n"
+                     "space directions: none (2,0,0) (0,2,0) (0,0,2)\nkinds: list domain domain domain\n"
                      "encoding: raw\nspace origin: (0,0,0)\nSegment0_ID:=Segment_1\nSegment0_Name:=Femur\n"
-                     "Segment0_Layer:=0\nSegment0_LabelValue:=1\nSegment1_ID:=Segment_2\nSegment1_Name:=Bone\n"
+                     "Segment0_Layer:=0\nSegment0_LabelValue:=1\nSegment1_ID:=Segment_2\nSegment1_Name:=Half\n"
                      "Segment1_Layer:=1\nSegment1_LabelValue:=1\n\n";
-  for (int i = 0; i < 6 * 5 * 4; ++i)
+  for (int i = 0; i < Size * Size * Size; ++i)
   {
-    text += { static_cast<char>(i % 6 > 2), static_cast<char>(i % 6 > 1) };
+    const auto label = static_cast<char>(labels->GetBufferPointer()[i]);
+    text += { label, i % Size < Size / 2 ? label : '\0' };
   }
   WriteText(path, text);
 }
 
+/** One DICOM image of GDCM's, with these attributes. */
 void
-WriteDicomSlices(const std::string & folder)
+WriteDicom(const LabelImage *                                        image,
+           const std::vector<std::pair<const char *, std::string>> & attributes,
+           const std::string &                                       path)
 {
-  std::filesystem::create_directory(folder);
-  for (int k = 0; k < 4; ++k)
+  auto io = itk::GDCMImageIO::New();
+  auto slice = LabelImage::New();
+  slice->Graft(image);
+  for (const auto & [key, text] : attributes)
   {
-    auto image = LabelImage::New();
-    image->SetRegions(LabelImage::SizeType{ { 7, 6, 1 } });
-    image->Allocate();
-    image->FillBuffer(static_cast<short>(100 * k));
-    auto       io = itk::GDCMImageIO::New();
-    const auto put = [&image](const char * key, const std::string & text) {
-      itk::EncapsulateMetaData<std::string>(image->GetMetaDataDictionary(), key, text);
-    };
-    put("0008|0016", "1.2.840.10008.5.1.4.1.1.2");
-    put("0008|0060", "CT");
-    put("0028|0004", "MONOCHROME2");
-    put("0020|000d", "1.2.826.0.1.3680043.2.1125.1");
-    put("0020|000e", "1.2.826.0.1.3680043.2.1125.1.1");
-    put("0020|0032", "0\\0\\" + std::to_string(2 * k));
-    put("0020|0037", "1\\0\\0\\0\\1\\0");
-    io->KeepOriginalUIDOn();
-    auto writer = itk::ImageFileWriter<LabelImage>::New();
-    writer->SetImageIO(io);
-    writer->SetInput(image);
-    writer->SetFileName(folder + "/" + std::to_string(k) + ".dcm");
-    writer->Update();
+    itk::EncapsulateMetaData<std::string>(slice->GetMetaDataDictionary(), key, text);
   }
+  io->KeepOriginalUIDOn();
+  auto writer = itk::ImageFileWriter<LabelImage>::New();
+  writer->SetImageIO(io);
+  writer->SetInput(slice);
+  writer->SetFileName(path);
+  writer->Update();
+}
+
+LabelImage::Pointer
+SliceOf(const CTImage * ct, int z)
+{
+  auto image = LabelImage::New();
+  image->SetRegions(LabelImage::SizeType{ { Size, Size, 1 } });
+  image->SetSpacing(ct->GetSpacing());
+  image->Allocate();
+  for (int i = 0; i < Size * Size; ++i)
+  {
+    image->GetBufferPointer()[i] = static_cast<short>(ct->GetBufferPointer()[z * Size * Size + i]);
+  }
+  return image;
+}
+
+/** The CT as a series, and a slice of it as a radiograph. */
+void
+WriteDicoms(const CTImage * ct, const std::string & folder)
+{
+  std::filesystem::create_directory(folder + "/dicom");
+  const auto common = [](const char * storage, const char * modality) {
+    return std::vector<std::pair<const char *, std::string>>{ { "0008|0016", storage },
+                                                              { "0008|0060", modality },
+                                                              { "0028|0004", "MONOCHROME2" },
+                                                              { "0020|000d", "1.2.826.0.1.3680043.2.1125.1" },
+                                                              { "0020|000e", "1.2.826.0.1.3680043.2.1125.1.1" } };
+  };
+  for (int z = 0; z < Size; ++z)
+  {
+    auto attributes = common("1.2.840.10008.5.1.4.1.1.2", "CT");
+    attributes.emplace_back("0020|0032", "0\\0\\" + std::to_string(2 * z));
+    attributes.emplace_back("0020|0037", "1\\0\\0\\0\\1\\0");
+    WriteDicom(SliceOf(ct, z), attributes, folder + "/dicom/" + std::to_string(z) + ".dcm");
+  }
+  WriteDicom(SliceOf(ct, Size / 2), common("1.2.840.10008.5.1.4.1.1.1.1", "DX"), folder + "/xray.dcm");
 }
 
 /** The surface as ASCII STL and PLY, and as VTK's XML by way of text. */
@@ -195,23 +226,29 @@ WriteBinarySurface(const TriangleSurface & surface, const std::string & folder)
   WriteText(folder + "/surface_binary.ply", ply);
 }
 
+/** The mesh as subject number i of a population. */
+MeshArrays
+SubjectOf(MeshArrays mesh, int i)
+{
+  for (Vector3 & p : mesh.points)
+  {
+    p.z() *= 1.0 + 0.05 * i;
+  }
+  for (double & c : mesh.coefficients)
+  {
+    c += 50.0 * (i % 2);
+  }
+  return mesh;
+}
+
 void
 WriteAtlas(const DensityMesh<double> * mesh, const std::string & path)
 {
   auto set = MeshTrainingSet<>::New();
   for (int i = 0; i < 3; ++i)
   {
-    MeshArrays arrays = mesh->GetArrays();
-    for (Vector3 & p : arrays.points)
-    {
-      p.z() *= 1.0 + 0.05 * i;
-    }
-    for (double & c : arrays.coefficients)
-    {
-      c += 50.0 * (i % 2);
-    }
     auto subject = DensityMesh<double>::New();
-    subject->SetArrays(std::move(arrays));
+    subject->SetArrays(SubjectOf(mesh->GetArrays(), i));
     set->AddSubject(std::to_string(i), subject);
   }
   auto estimator = StatisticalModelEstimator<>::New();
@@ -232,8 +269,31 @@ WriteImages(const CTImage * ct, const LabelImage * labels, const std::string & f
   {
     WriteImage(labels, folder + "/" + name);
   }
-  WriteSegments(folder + "/segments.seg.nrrd");
-  WriteDicomSlices(folder + "/dicom");
+  WriteSegments(labels, folder + "/segments.seg.nrrd");
+  WriteDicoms(ct, folder);
+}
+
+/** The ball as a structure of circles. */
+void
+WriteStructureSet(const std::string & path)
+{
+  constexpr int    corners = 16;
+  constexpr double radius = 14.0;
+  const Vector3    centre(17.0, 16.8, 16.6);
+  Structure        ball{ "femur", {} };
+  for (int k = 3; k <= 13; ++k)
+  {
+    const double         z = 2.0 * k;
+    const double         r = std::sqrt(radius * radius - (z - centre.z()) * (z - centre.z()));
+    std::vector<Vector3> circle;
+    for (int i = 0; i < corners; ++i)
+    {
+      const double angle = 2.0 * itk::Math::pi * i / corners;
+      circle.emplace_back(centre.x() + r * std::cos(angle), centre.y() + r * std::sin(angle), z);
+    }
+    ball.contours.push_back(circle);
+  }
+  WriteStructures(path, { ball }, "RTSTRUCT");
 }
 
 void
@@ -241,7 +301,11 @@ WriteTexts(const std::string & folder)
 {
   WriteText(folder + "/names.csv", "value,name\n1,left femur\n2,\"right femur\"\n");
   WriteText(folder + "/names.json", R"({"labels": {"background": 0, "left": 1, "right": 2}})");
-  WriteText(folder + "/subjects.txt", "# shape, CT\nmodel_L1.vtu, ct.nii.gz\nmodel_L2.vtu\n");
+  WriteText(folder + "/subjects.txt", "# shape, CT\nmodel_L1.vtu, ct.nii.gz\nsubject.vtu, ct.mha\n");
+  WriteText(folder + "/references.json",
+            R"({"references": [{"name": "water", "density": 0, "value": 0},
+                {"name": "core", "density": 150, "label": 1},
+                {"name": "rod", "density": 800, "from": [17, 17, 4], "to": [17, 17, 8], "radius": 2}]})");
   WriteText(folder + "/rtk.json", R"({"rtk": "geometry.xml", "size": [20, 20], "spacing": [2, 2]})");
 }
 } // namespace
@@ -253,6 +317,7 @@ WriteFuzzSeeds(const std::string & folder)
   const auto labels = MakeBall<LabelImage>(1.0, 1.0, 0.0);
   WriteImages(ct, labels, folder);
   WriteTexts(folder);
+  WriteStructureSet(folder + "/structures.dcm");
 
   BuildPipeline pipeline(2);
   pipeline.SetImage(ct);
@@ -276,13 +341,17 @@ WriteFuzzSeeds(const std::string & folder)
   WriteRtkGeometry({ view }, folder + "/geometry.xml");
   BuildParameters parameters;
   pipeline.GetParameters(parameters);
+  parameters.plan.tetrahedra = 500;
+  parameters.plan.levels = { 0.5 };
   WriteText(folder + "/report.json",
-            "{\"input\": {\"image\": \"ct.nii.gz\"}, \"parameters\": " + ToJson(parameters) + "}");
+            R"({"input": {"image": "ct.nii.gz", "labels": "labels.nii.gz"}, "parameters": )" + ToJson(parameters) +
+              "}");
   const auto            level = ReadDensityMesh(folder + "/model_L1.vtu");
   std::vector<IdType>   ids;
   const TriangleSurface surface = ExteriorSurface(level->GetArrays(), ids);
   WriteSurface(surface, folder);
   WriteBinarySurface(surface, folder);
+  WriteMeshArrays(SubjectOf(level->GetArrays(), 1), folder + "/subject.vtu");
   WriteAtlas(level, folder + "/atlas.h5");
 }
 } // namespace bone

@@ -138,9 +138,50 @@ std::string
 Mutator::Damage(const std::string & bytes)
 {
   std::string damaged = bytes;
-  for (std::size_t times = 1 + Below(4); times > 0; --times)
+  for (std::size_t times = 1 + Below(2) * Below(4); times > 0; --times) // mostly once, as more is mostly refused
   {
     DamageOnce(damaged);
+  }
+  return damaged;
+}
+
+void
+Mutator::DamageBase64(std::string & bytes)
+{
+  constexpr std::size_t shortest = 40; // of an array's text
+  const std::string     letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (int attempt = 0; attempt < 1000; ++attempt)
+  {
+    const std::size_t at = Below(bytes.size());
+    const std::size_t before = bytes.find_last_of("<>", at);
+    const std::size_t after = bytes.find_first_of("<>", at);
+    if (before != std::string::npos && bytes[before] == '>' && after != std::string::npos &&
+        after - before > shortest && letters.find(bytes[at]) != std::string::npos)
+    {
+      bytes[at] = letters[Below(letters.size())];
+      return;
+    }
+  }
+}
+
+std::string
+Mutator::DamagePayload(const std::string & bytes, Payload payload)
+{
+  constexpr std::size_t longestHeader = 400; // of the seeds
+  std::string           damaged = bytes;
+  const std::size_t     first = std::min(longestHeader, bytes.size() / 2);
+  const std::size_t     at = first + Below(bytes.size() - first);
+  if (payload == Payload::Length || Below(4) == 0)
+  {
+    damaged.resize(at);
+  }
+  else if (payload == Payload::Base64)
+  {
+    this->DamageBase64(damaged);
+  }
+  else
+  {
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << Below(8)));
   }
   return damaged;
 }

@@ -10,6 +10,16 @@
 
 namespace bone
 {
+/** What of a format's payload a reader has to notice: nothing; that the end is missing; damage anywhere, by a checksum;
+ * the same in the compressed arrays of VTK's XML, which are written in base64. */
+enum class Payload
+{
+  Unchecked,
+  Length,
+  Compressed,
+  Base64
+};
+
 /** \class Mutator
  * \brief Damages a file's bytes: flipped bits, wild numbers and words, ranges cut out, doubled or moved, the end cut
  * off.
@@ -29,6 +39,10 @@ public:
   std::string
   DamageWithin(const std::string & gzip);
 
+  /** Damage that a reader has to notice: behind the header, in what is checked. */
+  std::string
+  DamagePayload(const std::string & bytes, Payload payload);
+
   /** A number below `count`. */
   std::size_t
   Below(std::size_t count)
@@ -39,6 +53,8 @@ public:
 private:
   void
   DamageOnce(std::string & bytes);
+  void
+  DamageBase64(std::string & bytes);
 
   std::mt19937_64 m_Random;
 };

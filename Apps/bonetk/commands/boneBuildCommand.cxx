@@ -283,8 +283,7 @@ BuildBones(const BuildOptions & options, const CTImage * ct, const std::vector<B
     }
     catch (const std::exception & problem)
     {
-      const auto * ofItk = dynamic_cast<const itk::ExceptionObject *>(&problem);
-      session.Fail(ofItk == nullptr ? problem.what() : ErrorLine(*ofItk));
+      session.Fail(problem);
       failed += (failures++ == 0 ? "" : ", ") + session.subject;
     }
     session.ForgetWarnings(common);
@@ -303,6 +302,11 @@ void
 RunBuild(const BuildOptions & given, Session & session)
 {
   const BuildOptions options = Complete(given);
+  for (const std::string & file :
+       given.ct.empty() ? std::vector<std::string>{ options.ct, options.bone.labels.file } : std::vector<std::string>())
+  {
+    session.inputs.push_back(file); // which the report names
+  }
   { // Found out before the work.
     const StagingFolder probe(options.output);
     VerifyFolder(options.output);

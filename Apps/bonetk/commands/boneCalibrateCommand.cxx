@@ -56,11 +56,16 @@ ReadReference(const nlohmann::json & json)
 std::vector<DensityReference>
 ReadReferences(const std::string & path)
 {
-  const nlohmann::json          document = ReadJsonFile(path);
+  const nlohmann::json document = ReadJsonFile(path);
+  if (!document.is_object() || !document.contains("references") || !document["references"].is_array() ||
+      document["references"].empty())
+  {
+    throw IOError(path, "must hold a list of one reference or more, 'references'");
+  }
   std::vector<DensityReference> references;
   try
   {
-    for (const nlohmann::json & item : Member(document, "references"))
+    for (const nlohmann::json & item : document["references"])
     {
       references.push_back(ReadReference(item));
     }

@@ -64,8 +64,8 @@ RunTrain(const TrainOptions & options, Session & session)
   const std::string               standard = options.standard.empty() ? subjects.front().shape : options.standard;
   if (!HasExtension(standard, ".vtu"))
   {
-    throw UsageError("the standard model " + standard +
-                     " must be a mesh (.vtu): put one first in the list, or give --standard");
+    throw UsageError("the standard model " + standard + " must be a mesh (.vtu): put one first in " + options.list +
+                     ", or give --standard");
   }
   PopulationRegistration population(ReadDensityMesh(standard), options.degree);
   VerifySubjects(subjects);

@@ -46,7 +46,7 @@ SnakeContourFilter<TInputImage, TLabelImage>::VerifyInputInformation() const
     if (size[a] < least)
     {
       itkExceptionMacro("The CT has " << size[a] << " voxels along axis " << a << " and needs at least " << least
-                                      << (a == m_Parameters.axis ? " (slices; choose another Axis?)." : "."));
+                                      << (a == m_Parameters.axis ? " (slices; are they along another axis?)." : "."));
     }
   }
   const auto & direction = this->GetInput()->GetDirection();

@@ -195,8 +195,17 @@ ExtractContours(const SliceFrame &             frame,
   if (!(brightest >= parameters.boneThreshold))
   {
     std::ostringstream text;
-    text << "The CT holds no bone: within the contours its highest value is " << brightest << ", below BoneThreshold ("
-         << parameters.boneThreshold << "). Do the CT and its start belong together?";
+    text << "The CT holds no bone: ";
+    if (brightest == std::numeric_limits<double>::lowest())
+    {
+      text << "no voxel of it lies within the contours";
+    }
+    else
+    {
+      text << "within the contours its highest value is " << brightest << ", below BoneThreshold ("
+           << parameters.boneThreshold << ')';
+    }
+    text << ". Do the CT and its start belong together?";
     throw std::runtime_error(text.str());
   }
   if (label == nullptr || parameters.followLabel)

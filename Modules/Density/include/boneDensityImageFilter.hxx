@@ -84,7 +84,7 @@ DensityImageFilter<TMesh, TOutputImage>::GenerateData()
   const MeshArrays arrays = this->GetInput()->GetArrays();
   if (!arrays.HasDensity())
   {
-    itkExceptionMacro("The input 'Mesh' has no density: fit one first (DensityFitFilter).");
+    itkExceptionMacro("The input 'Mesh' has no density: fit one first.");
   }
   this->AllocateOutputs();
   TOutputImage *      output = this->GetOutput();

@@ -17,7 +17,7 @@ namespace bone
 class IOError : public itk::ExceptionObject
 {
 public:
-  /** The line is "path: message"; line breaks within become spaces. */
+  /** The line is \ref OneLine of "path: message". */
   IOError(const std::string & path, const std::string & message);
 
   const char *
@@ -31,6 +31,11 @@ public:
     return "IOError";
   }
 };
+
+/** The text with blanks for line breaks and other control characters, which names in files may hold, and none at its
+ * end. */
+std::string
+OneLine(std::string text);
 
 /** An exception's description as one line for a person: without ITK's "ITK ERROR: Class(address):" before it. */
 std::string

@@ -28,6 +28,9 @@ long long
 WholeMember(const nlohmann::json & object, const char * name, long long lowest, long long highest);
 std::string
 TextMember(const nlohmann::json & object, const char * name);
+/** The name of a file, which is not empty. */
+std::string
+FileMember(const nlohmann::json & object, const char * name);
 Eigen::VectorXd
 NumbersMember(const nlohmann::json & object, const char * name, int count);
 

@@ -110,11 +110,18 @@ ToViews(const json & object, const std::string & folder)
     Refuse("'rowsDown' must be true or false");
   }
   grid.rowsDown = object.value("rowsDown", false);
-  const std::string               name = TextMember(object, "rtk");
+  const std::string               name = FileMember(object, "rtk");
   std::vector<XRayGeometry::View> views;
-  for (const RtkProjection & projection : ReadRtkGeometry(name.front() == '/' ? name : folder + name))
+  try
   {
-    views.push_back(FromRtk(projection, grid));
+    for (const RtkProjection & projection : ReadRtkGeometry(name.front() == '/' ? name : folder + name))
+    {
+      views.push_back(FromRtk(projection, grid));
+    }
+  }
+  catch (const IOError & error)
+  {
+    Refuse(ErrorLine(error)); // the name of the file that names it goes before it
   }
   return views;
 }

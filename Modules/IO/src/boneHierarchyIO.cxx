@@ -65,12 +65,19 @@ Level
 ToLevel(const json & object, const fs::path & folder, const Level * before)
 {
   Level             level;
-  const std::string name = TextMember(object, "file");
+  const std::string name = FileMember(object, "file");
   const std::string file = (folder / name).string();
-  level.mesh = ReadDensityMesh(file);
+  try
+  {
+    level.mesh = ReadDensityMesh(file);
+  }
+  catch (const IOError & error)
+  {
+    Refuse(ErrorLine(error)); // the hierarchy's name goes before it
+  }
   const auto points = static_cast<long long>(level.mesh->GetNumberOfPoints());
   const auto tetrahedra = static_cast<long long>(level.mesh->GetNumberOfTetrahedra());
-  const auto highest = std::numeric_limits<long long>::max();
+  const auto highest = std::numeric_limits<IdType>::max();
   if (WholeMember(object, "points", 0, highest) != points ||
       WholeMember(object, "tetrahedra", 0, highest) != tetrahedra)
   {

@@ -7,17 +7,15 @@
 
 namespace bone
 {
-namespace
-{
 std::string
 OneLine(std::string text)
 {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace_if(
+    text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
   const auto end = text.find_last_not_of(' ');
   text.erase(end == std::string::npos ? 0 : end + 1);
   return text;
 }
-} // namespace
 
 IOError::IOError(const std::string & path, const std::string & message)
   : itk::ExceptionObject(__FILE__, __LINE__)

@@ -90,6 +90,17 @@ TextMember(const json & object, const char * name)
   return value.get<std::string>();
 }
 
+std::string
+FileMember(const json & object, const char * name)
+{
+  const std::string file = TextMember(object, name);
+  if (file.empty())
+  {
+    Refuse("'", name, "' must be the name of a file");
+  }
+  return file;
+}
+
 Eigen::VectorXd
 NumbersMember(const json & object, const char * name, int count)
 {

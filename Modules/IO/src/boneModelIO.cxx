@@ -89,16 +89,41 @@ PutTextAttribute(const H5::Group & group, const std::string & name, const std::s
   group.createAttribute(name, type, H5::DataSpace()).write(type, text);
 }
 
-/** The largest dataset taken from a file, so that a damaged one asks for no more memory than its size. */
-template <typename T>
-std::vector<T>
-Get(const H5::Group & group, const std::string & name, Sizes & sizes)
+/** A dataset with its sizes. Throws where it has more entries than its file could hold, so that a damaged file asks for
+ * no more memory than belongs to its size. */
+H5::DataSet
+Open(const H5::Group & group, const std::string & name, Sizes & sizes)
 {
+  constexpr double    mostOfByte = 1032.0; // bytes that zlib makes of one, where another program compressed the file
   const H5::DataSet   set = group.openDataSet(name);
   const H5::DataSpace space = set.getSpace();
   sizes.assign(static_cast<std::size_t>(space.getSimpleExtentNdims()), 0);
   space.getSimpleExtentDims(sizes.data());
-  std::vector<T> data(static_cast<std::size_t>(space.getSimpleExtentNpoints()));
+  double entries = 1.0;
+  for (const hsize_t size : sizes)
+  {
+    entries *= static_cast<double>(size);
+  }
+  const hid_t file = H5Iget_file_id(set.getId());
+  hsize_t     bytes = 0;
+  H5Fget_filesize(file, &bytes);
+  H5Fclose(file);
+  const double most = static_cast<double>(bytes) / static_cast<double>(set.getDataType().getSize()) *
+                      (set.getCreatePlist().getNfilters() > 0 ? mostOfByte : 1.0);
+  if (!(entries <= most))
+  {
+    Refuse("'", name, "' has ", entries, " entries, more than the file can hold");
+  }
+  return set;
+}
+
+template <typename T>
+std::vector<T>
+Get(const H5::Group & group, const std::string & name, Sizes & sizes)
+{
+  const H5::DataSet   set = Open(group, name, sizes);
+  const H5::DataSpace space = set.getSpace();
+  std::vector<T>      data(static_cast<std::size_t>(space.getSimpleExtentNpoints()));
   set.read(data.data(), NativeType<T>());
   return data;
 }
@@ -132,14 +157,12 @@ GetVector(const H5::Group & group, const std::string & name)
 Eigen::MatrixXd
 GetColumns(const H5::Group & group, const std::string & name)
 {
-  const H5::DataSet   set = group.openDataSet(name);
-  const H5::DataSpace space = set.getSpace();
-  if (space.getSimpleExtentNdims() != 2)
+  Sizes             sizes;
+  const H5::DataSet set = Open(group, name, sizes);
+  if (sizes.size() != 2)
   {
     Refuse("'", name, "' is no matrix");
   }
-  Sizes sizes(2);
-  space.getSimpleExtentDims(sizes.data());
   Eigen::MatrixXd matrix(static_cast<Eigen::Index>(sizes[1]), static_cast<Eigen::Index>(sizes[0]));
   set.read(matrix.data(), H5::PredType::NATIVE_DOUBLE);
   if (!matrix.allFinite())
@@ -386,16 +409,16 @@ GetModel(const H5::H5File & file)
 /** Runs action() and turns HDF5's exceptions into IOError. */
 template <typename TAction>
 auto
-NamingHdf5File(const std::string & path, const std::string & what, TAction && action)
+NamingHdf5File(const std::string & path, const std::string & problem, TAction && action)
 {
   H5::Exception::dontPrint();
   try
   {
     return NamingFile(path, action);
   }
-  catch (const H5::Exception & error)
+  catch (const H5::Exception &)
   {
-    throw IOError(path, what + " (" + error.getFuncName() + ": " + error.getDetailMsg() + ')');
+    throw IOError(path, problem); // what HDF5 says is about its own functions
   }
 }
 } // namespace
@@ -409,7 +432,7 @@ WriteStatisticalModel(const StatisticalModel * model, const std::string & path)
     throw IOError(path, "the statistical model to write is empty");
   }
   AtomicFile file(path);
-  NamingHdf5File(path, "cannot be written", [&] {
+  NamingHdf5File(path, "cannot be written (is the disk full?)", [&] {
     H5::H5File hdf5(file.GetTemporaryPath(), H5F_ACC_TRUNC);
     PutStatismo(hdf5, model->GetContent());
     PutModel(hdf5, model->GetContent());
@@ -422,7 +445,7 @@ ReadStatisticalModel(const std::string & path)
 {
   RequireReadableFile(path);
   RequireExtension(path, { ".h5" });
-  return NamingHdf5File(path, "is no statistical model of BoneTK, or damaged", [&] {
+  return NamingHdf5File(path, "is no statistical model of BoneTK, or cut short or damaged", [&] {
     auto model = StatisticalModel::New();
     model->SetContent(GetModel(H5::H5File(path, H5F_ACC_RDONLY)));
     return model;

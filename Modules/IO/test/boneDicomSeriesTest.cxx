@@ -100,6 +100,37 @@ TEST_F(DicomSeriesTest, RefusesASliceThatIsCutShort)
   }
 }
 
+TEST_F(DicomSeriesTest, RefusesAMetaHeaderThatGdcmCannotBear)
+{
+  WriteSlice(Path("0.dcm"), 10, 0, 0, "1");
+  const std::string     whole = ReadText("0.dcm");
+  constexpr std::size_t second = 132 + 12; // (0002,0001) OB, after the group's length
+  ASSERT_EQ(whole.substr(second + 4, 2), "OB");
+  for (const auto & [at, bytes] : { std::pair<std::size_t, std::string>{ second + 4, "SQ" },
+                                    { second + 4, "Ob" },
+                                    { second + 8, "\xff\xff\xff\xff" },
+                                    { second + 8, "\xff\xff\xff\x0f" } })
+  {
+    std::string damaged = whole;
+    WriteText("0.dcm", damaged.replace(at, bytes.size(), bytes));
+    EXPECT_THAT(ErrorOf([&] { ReadRadiograph(Path("0.dcm")); }), HasSubstr("0.dcm: is a DICOM file that is cut short"));
+  }
+}
+
+TEST_F(DicomSeriesTest, RefusesPixelsThatGdcmCannotBear)
+{
+  WriteSlice(Path("0.dcm"), 10, 0, 0, "1");
+  const std::string whole = ReadText("0.dcm");
+  for (const char element : { '\x02', '\x00', '\x01' })
+  {
+    const std::string tag = std::string("\x28\x00", 2) + element + (element == '\x02' ? '\x00' : '\x01');
+    ASSERT_NE(whole.find(tag), std::string::npos);
+    std::string damaged = whole;
+    WriteText("0.dcm", damaged.replace(whole.find(tag) + 8, 2, "\x2d\x01"));
+    EXPECT_THAT(ErrorOf([&] { ReadRadiograph(Path("0.dcm")); }), HasSubstr("0.dcm: is a DICOM"));
+  }
+}
+
 TEST_F(DicomSeriesTest, RefusesATiltedGantry)
 {
   for (int k = 0; k < 5; ++k)

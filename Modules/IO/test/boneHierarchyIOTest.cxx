@@ -75,7 +75,9 @@ TEST_F(HierarchyIOTest, SaysWhatIsWrong)
   };
   EXPECT_THAT(ErrorOf([&] { ReadHierarchy(Path("no.json")); }), HasSubstr("there is no such file"));
   EXPECT_THAT(error("\"levels\"", "\"lovels\""), HasSubstr("'levels' is missing"));
+  EXPECT_THAT(error("h_L2.vtu", "h_L3.vtu"), HasSubstr("h.hierarchy.json: level 2: "));
   EXPECT_THAT(error("h_L2.vtu", "h_L3.vtu"), HasSubstr("h_L3.vtu: there is no such file"));
+  EXPECT_THAT(error("h_L2.vtu", ""), HasSubstr("level 2: 'file' must be the name of a file"));
   EXPECT_THAT(error("\"points\": 8", "\"points\": 9"), HasSubstr("level 2: the file 'h_L2.vtu' has 8 points"));
   EXPECT_THAT(error("\"points\": 8", "\"points\": \"8\""), HasSubstr("'points' must be a whole number"));
   EXPECT_THAT(error("10\n", "12\n"), HasSubstr("'parentPoint' has an entry that is no id of the 12 points"));

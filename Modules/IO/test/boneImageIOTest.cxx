@@ -276,6 +276,30 @@ TEST_F(ImageIOTest, RefusesMetaImagesWithoutTheirDataFiles)
   }
 }
 
+TEST_F(ImageIOTest, RefusesMetaHeadersThatItksReaderCannotBear)
+{
+  WriteText("x.raw", std::string(128, '\0'));
+  const auto error = [&](const std::string & lines, const std::string & last = "ElementDataFile = x.raw\n") {
+    WriteText("m.mhd", "ObjectType = Image\nNDims = 3\nBinaryData = True\n" + lines + last);
+    return ErrorOfReading("m.mhd");
+  };
+  const std::string grid = "DimSize = 4 4 4\nElementType = MET_SHORT\n";
+  EXPECT_EQ(error(grid), "no IOError was thrown");
+  EXPECT_THAT(error(grid, "ElementDateFile = x.raw\n"), HasSubstr("does not say where the voxels are"));
+  for (const std::string & line :
+       { "Comment = " + std::string(400, 'x'), std::string(400, 'x') + " = 1", std::string("x") })
+  {
+    EXPECT_THAT(error(line + '\n' + grid), HasSubstr("has a line that is damaged, or too long")) << line;
+  }
+  EXPECT_THAT(error("DimSize = 4 4 4\nElementType = MET_ODD\n"), HasSubstr("no known kind of number"));
+  EXPECT_THAT(error("NDims = -3\n" + grid), HasSubstr("its header's 'NDims' is -3"));
+  for (const char * axes : { "0 0 0 0 0 0 0 0 0", "1 0 0 1 0 0 0 0 1" })
+  {
+    EXPECT_THAT(error("TransformMatrix = " + std::string(axes) + '\n' + grid),
+                HasSubstr("m.mhd: its header's axes (direction) lie in one plane or are empty"));
+  }
+}
+
 TEST_F(ImageIOTest, ALabelMapOfOneBoneSaysSo)
 {
   auto labels = ObliqueRamp<LabelImage>();

@@ -189,6 +189,32 @@ TEST_F(MeshIOTest, RefusesArraysThatAreTooShortOrOfNoKnownType)
   EXPECT_THAT(ErrorOfReading(vtu.Text()), HasSubstr("m.vtu: "));
 }
 
+TEST_F(MeshIOTest, RefusesCountsThatTheFileCannotHold)
+{
+  WriteMeshArrays(DensityBox({ 3 }), Path("m.vtu"));
+  const std::string good = ReadText("m.vtu");
+  const auto        error = [&](const std::string & from, const std::string & to) {
+    std::string text = good;
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    return ErrorOfReading(text.replace(text.find(from), from.size(), to));
+  };
+  for (const char * count : { "-1e300", "-1", "nan", "1e15", "99999999999999999999", "0x10", "" })
+  {
+    EXPECT_THAT(error("NumberOfPoints=\"", std::string("NumberOfPoints=\"") + count + "\" x=\""),
+                HasSubstr("m.vtu: is damaged: 'NumberOfPoints' of 'Piece' is"))
+      << count;
+  }
+  EXPECT_THAT(error("NumberOfComponents=\"4\"", "NumberOfComponents=\"4294967296\""),
+              HasSubstr("'NumberOfComponents'"));
+  // The number of blocks of a compressed array, the first eight bytes of its text.
+  EXPECT_THAT(error("AQAAAAAAAAA", "AQAAAAAAAH8"), HasSubstr("m.vtu: is "));
+  EXPECT_THAT(error("AQAAAAAAAAAA", "AQAAAAAAAAAA////////"), HasSubstr("m.vtu: is "));
+  EXPECT_THAT(error("AQAAAAAAAAAAgAAAAAAAA", "AQAAAAAAAAAAAAAAAAAAA"), HasSubstr("m.vtu: is ")); // their size
+  std::string vectors = good; // an array that has elements within
+  vectors.replace(good.find("AQAAAAAAAAAA", good.find("Name=\"Points\"")), 10, "AQAAAAAAAUA");
+  EXPECT_THAT(ErrorOfReading(vectors), HasSubstr("m.vtu: is "));
+}
+
 TEST_F(MeshIOTest, RefusesCellsThatAreNoLinearTetrahedraAndSaysWhich)
 {
   Vtu hexahedron;

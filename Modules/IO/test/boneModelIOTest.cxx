@@ -152,6 +152,23 @@ TEST_F(ModelIO, RefusesWhatIsNoModel)
   EXPECT_THROW(WriteStatisticalModel(model, Path("atlas.vtu")), IOError);
 }
 
+TEST_F(ModelIO, RefusesSizesThatTheFileCannotHold)
+{
+  for (const int dimensions : { 1, 2 })
+  {
+    const std::string path = WriteModel(Path("atlas.h5"));
+    const char *      name = dimensions == 1 ? "/bonetk/shape/mean" : "/bonetk/shape/modes";
+    {
+      H5::H5File    file(path, H5F_ACC_RDWR);
+      const hsize_t sizes[2] = { hsize_t{ 1 } << 40, 3 };
+      file.unlink(name);
+      file.createDataSet(name, H5::PredType::NATIVE_DOUBLE, H5::DataSpace(dimensions, sizes)); // nothing is written
+    }
+    EXPECT_THAT(ErrorOf([&] { ReadStatisticalModel(path); }), testing::HasSubstr("more than the file can hold"))
+      << name;
+  }
+}
+
 TEST_F(ModelIO, RefusesIdsOutOfRange)
 {
   const std::string path = WriteModel(Path("atlas.h5"));

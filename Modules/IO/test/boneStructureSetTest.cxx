@@ -4,11 +4,7 @@
 #include "boneContourIO.h"
 
 #include "boneTestFiles.h"
-
-#include <gdcmAttribute.h>
-#include <gdcmSequenceOfItems.h>
-#include <gdcmUIDGenerator.h>
-#include <gdcmWriter.h>
+#include "boneTestStructures.h"
 
 namespace bone
 {
@@ -16,105 +12,10 @@ using testing::HasSubstr;
 
 namespace
 {
-struct Structure
-{
-  std::string                       name;
-  std::vector<std::vector<Vector3>> contours;
-  std::string                       type{ "CLOSED_PLANAR " };
-};
-
 std::vector<Vector3>
 Square(double x, double half, double z)
 {
   return { { x - half, -half, z }, { x + half, -half, z }, { x + half, half, z }, { x - half, half, z } };
-}
-
-template <uint16_t VGroup, uint16_t VElement, typename TValue>
-void
-Put(gdcm::DataSet & data, const TValue & value)
-{
-  gdcm::Attribute<VGroup, VElement> attribute{};
-  attribute.SetValue(value);
-  data.Replace(attribute.GetAsDataElement());
-}
-
-gdcm::SmartPointer<gdcm::SequenceOfItems>
-NewSequence()
-{
-  gdcm::SmartPointer<gdcm::SequenceOfItems> sequence = new gdcm::SequenceOfItems;
-  sequence->SetLengthToUndefined();
-  return sequence;
-}
-
-void
-AddItem(gdcm::SequenceOfItems * sequence, const gdcm::DataSet & data)
-{
-  gdcm::Item item;
-  item.SetVLToUndefined();
-  item.SetNestedDataSet(data);
-  sequence->AddItem(item);
-}
-
-void
-PutSequence(gdcm::DataSet & data, const gdcm::Tag & tag, gdcm::SequenceOfItems * sequence)
-{
-  gdcm::DataElement element(tag);
-  element.SetVR(gdcm::VR::SQ);
-  element.SetValue(*sequence);
-  element.SetVLToUndefined();
-  data.Replace(element);
-}
-
-gdcm::DataSet
-ContourItem(const Structure & structure, const std::vector<Vector3> & points)
-{
-  gdcm::DataSet data;
-  Put<0x3006, 0x0042>(data, gdcm::CSComp(structure.type));
-  Put<0x3006, 0x0046>(data, static_cast<int>(points.size()));
-  std::vector<double> values;
-  for (const Vector3 & p : points)
-  {
-    values.insert(values.end(), p.data(), p.data() + 3);
-  }
-  gdcm::Attribute<0x3006, 0x0050> attribute;
-  attribute.SetValues(values.data(), static_cast<unsigned int>(values.size()), true);
-  data.Replace(attribute.GetAsDataElement());
-  return data;
-}
-
-void
-WriteStructures(const std::string & path, const std::vector<Structure> & structures, const std::string & modality)
-{
-  gdcm::Writer       writer;
-  gdcm::DataSet &    data = writer.GetFile().GetDataSet();
-  gdcm::UIDGenerator uids;
-  Put<0x0008, 0x0016>(data, gdcm::UIComp("1.2.840.10008.5.1.4.1.1.481.3"));
-  Put<0x0008, 0x0018>(data, gdcm::UIComp(uids.Generate()));
-  Put<0x0008, 0x0060>(data, gdcm::CSComp(modality));
-  const auto names = NewSequence();
-  const auto contours = NewSequence();
-  for (std::size_t s = 0; s < structures.size(); ++s)
-  {
-    const int     number = static_cast<int>(10 * s + 3);
-    gdcm::DataSet name;
-    Put<0x3006, 0x0022>(name, number);
-    Put<0x3006, 0x0026>(name, gdcm::LOComp(structures[s].name));
-    AddItem(names, name);
-    gdcm::DataSet content;
-    Put<0x3006, 0x0084>(content, number);
-    const auto sequence = NewSequence();
-    for (const auto & points : structures[s].contours)
-    {
-      AddItem(sequence, ContourItem(structures[s], points));
-    }
-    PutSequence(content, gdcm::Tag(0x3006, 0x0040), sequence);
-    AddItem(contours, content);
-  }
-  PutSequence(data, gdcm::Tag(0x3006, 0x0020), names);
-  PutSequence(data, gdcm::Tag(0x3006, 0x0039), contours);
-  writer.GetFile().GetHeader().SetDataSetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
-  writer.SetFileName(path.c_str());
-  ASSERT_TRUE(writer.Write());
 }
 } // namespace
 

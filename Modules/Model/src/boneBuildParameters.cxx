@@ -194,7 +194,7 @@ ReadBuildParameters(const std::string & path, BuildParameters & parameters, Buil
   }
   catch (const std::exception & error)
   {
-    throw std::runtime_error(path + ": " + error.what());
+    throw IOError(path, error.what());
   }
 }
 } // namespace bone

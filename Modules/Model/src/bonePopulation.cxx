@@ -5,6 +5,7 @@
 
 #include "boneDensityFitFilter.h"
 #include "boneDensityFitKernel.h"
+#include "boneFileName.h"
 #include "boneIOError.h"
 #include "boneTetraLocator.h"
 
@@ -19,6 +20,9 @@ namespace bone
 namespace
 {
 namespace fs = std::filesystem;
+
+/** Of a name in a message; a file that is no list has lines of any length. */
+constexpr std::size_t LongestName = 200;
 
 std::string
 Trim(const std::string & text)
@@ -103,15 +107,25 @@ VerifySubjects(const std::vector<SubjectFiles> & subjects)
 std::vector<SubjectFiles>
 ReadSubjectList(const std::string & path)
 {
-  std::ifstream stream(path);
-  if (!stream || fs::is_directory(path))
-  {
-    throw IOError(path, "the list of subjects cannot be read");
-  }
+  RequireReadableFile(path);
+  std::ifstream             stream(path);
   std::vector<SubjectFiles> subjects;
+  std::size_t               number = 0;
+  const auto                require = [&](const std::string & file) {
+    std::error_code error;
+    if (!fs::exists(file, error))
+    {
+      throw IOError(path, "line " + std::to_string(number) + ": there is no file " + file.substr(0, LongestName));
+    }
+  };
   for (std::string line; std::getline(stream, line);)
   {
+    ++number;
     line = Trim(line);
+    if (std::any_of(line.begin(), line.end(), [](unsigned char c) { return c < ' ' && c != '\t'; }))
+    {
+      throw IOError(path, "line " + std::to_string(number) + " is no text");
+    }
     if (line.empty() || line[0] == '#')
     {
       continue;
@@ -121,13 +135,18 @@ ReadSubjectList(const std::string & path)
     subject.shape = Beside(fs::path(path).parent_path(), Trim(line.substr(0, comma)));
     subject.ct =
       comma == std::string::npos ? std::string() : Beside(fs::path(path).parent_path(), Trim(line.substr(comma + 1)));
+    require(subject.shape);
+    if (!subject.ct.empty())
+    {
+      require(subject.ct);
+    }
     subjects.push_back(subject);
   }
-  NameSubjects(subjects);
   if (subjects.size() < 2)
   {
     throw IOError(path, "the list must have two subjects or more, one a line");
   }
+  NameSubjects(subjects);
   return subjects;
 }
 

@@ -31,7 +31,7 @@ MeshQualityFilter<TMesh, TLabelImage>::Improve(TetraComplex & complex, const Exe
     {
       itkExceptionMacro("The input 'LabelImage' has no outline of "
                         << (parameters.label == 0 ? "any label" : "label " + std::to_string(parameters.label))
-                        << "; set Label to one that it has.");
+                        << ": choose one that it has.");
     }
     parameters.outline = &outline;
   }

@@ -73,7 +73,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::FindRegion() const -
     const int label = m_Parameters.maskLabel;
     itkExceptionMacro("No voxel of the input 'Mask' has "
                       << (label == 0 ? std::string("a label") : "the label " + std::to_string(label))
-                      << ": check MaskLabel.");
+                      << ": choose one that it has.");
   }
   RegionType counted;
   counted.SetIndex(lower);

@@ -56,7 +56,7 @@ FindObstacle(const std::vector<Vector3> &     points,
   }
   else if (!cells.HasDensity())
   {
-    text << "The input 'Mesh' has no density: fit one to a CT first (DensityFitFilter).";
+    text << "The input 'Mesh' has no density: fit one to a CT first.";
   }
   else if (!std::all_of(points.begin(), points.end(), [](const Vector3 & p) { return p.allFinite(); }) ||
            !std::all_of(cells.coefficients.begin(), cells.coefficients.end(), finite))

@@ -4,12 +4,17 @@
 #include "boneDicomFile.h"
 
 #include "boneIOError.h"
+#include "boneImageHeader.h"
 
 #include <dcmtk/config/osconfig.h>
 
 #include <dcmtk/dcmdata/dctk.h>
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace bone
 {
@@ -35,6 +40,27 @@ BytesOfPixels(DcmDataset & data)
     bytes *= value;
   }
   return bytes / 8.0 * FramesOf(data);
+}
+
+/** Throws where GDCM would stop the program: more samples a pixel than colours have, or bits that are not there. */
+void
+RequireKnownPixels(DcmDataset & data, const std::string & path)
+{
+  const auto number = [&data](const DcmTagKey & key, int otherwise) {
+    Uint16 value = 0;
+    return data.findAndGetUint16(key, value).good() ? static_cast<int>(value) : otherwise;
+  };
+  const int samples = number(DCM_SamplesPerPixel, 1);
+  const int allocated = number(DCM_BitsAllocated, 16);
+  const int stored = number(DCM_BitsStored, allocated);
+  const int high = number(DCM_HighBit, stored - 1);
+  if (samples < 1 || samples > 4 || allocated < 1 || allocated > 64 || stored < 1 || stored > allocated || high < 0 ||
+      high >= allocated)
+  {
+    throw IOError(path,
+                  "is a DICOM file that is damaged: it says that pixels have " + std::to_string(samples) +
+                    " samples, and " + std::to_string(stored) + " of " + std::to_string(allocated) + " bits");
+  }
 }
 
 std::string
@@ -73,6 +99,49 @@ ReadPlace(DcmDataset & data, DicomHeader & header)
 }
 } // namespace
 
+namespace
+{
+/** Whether the elements of group 2, which come first in the file, are whole: GDCM stops the program where they are not.
+ */
+bool
+HasWholeMetaHeader(const std::string & path)
+{
+  constexpr std::uint16_t metaGroup = 2;
+  constexpr std::uint32_t undefined = 0xFFFFFFFF;
+  std::ifstream           stream(path, std::ios::binary);
+  const auto              size = static_cast<std::uint64_t>(std::filesystem::file_size(path));
+  std::uint64_t           at = 132; // after the preamble and its mark
+  std::array<char, 8>     head{};
+  while (stream.seekg(static_cast<std::streamoff>(at)) && stream.read(head.data(), head.size()))
+  {
+    if (Decode<std::uint16_t>(head.data(), false) != metaGroup)
+    {
+      return true;
+    }
+    static const std::set<std::string> longLength{ "OB", "OD", "OF", "OL", "OV", "OW",
+                                                   "SV", "UC", "UN", "UR", "UT", "UV" };
+    static const std::set<std::string> shortLength{ "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FD", "FL", "IS", "LO",
+                                                    "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US" };
+    const std::string                  kind(&head[4], 2);
+    std::uint32_t                      length = Decode<std::uint16_t>(&head[6], false);
+    at += head.size();
+    if (longLength.count(kind) > 0)
+    {
+      std::array<char, 4> more{};
+      stream.read(more.data(), more.size());
+      length = Decode<std::uint32_t>(more.data(), false);
+      at += more.size();
+    }
+    at += length;
+    if (longLength.count(kind) + shortLength.count(kind) == 0 || length == undefined || at > size)
+    {
+      return false;
+    }
+  }
+  return false;
+}
+} // namespace
+
 bool
 IsDicomFile(const std::string & path)
 {
@@ -87,6 +156,11 @@ DicomHeader
 ReadWholeDicomFile(const std::string & path)
 {
   OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+  if (IsDicomFile(path) && !HasWholeMetaHeader(path))
+  {
+    throw IOError(path,
+                  "is a DICOM file that is cut short or damaged, in its first part; copy it again from where it came");
+  }
   DcmFileFormat     file;
   const OFCondition read = file.loadFile(path.c_str());
   if (read.bad())
@@ -104,6 +178,7 @@ ReadWholeDicomFile(const std::string & path)
   {
     throw IOError(path, "is a DICOM image whose pixels are not all there; copy it again from where it came");
   }
+  RequireKnownPixels(data, path);
   header.path = path;
   header.series = Text(data, DCM_SeriesInstanceUID);
   header.number = Text(data, DCM_SeriesNumber);

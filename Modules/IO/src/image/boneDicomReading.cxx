@@ -78,9 +78,11 @@ ReadDicomFolder(const std::string & folder, const std::string & wanted, std::vec
   {
     reader->Update();
   }
-  catch (const itk::ExceptionObject & error)
+  catch (const itk::ExceptionObject &)
   {
-    throw IOError(folder, "is no readable DICOM series: " + ErrorLine(error));
+    throw IOError(folder,
+                  "is no readable DICOM series: its slices differ in size or place, or are compressed in a way that is "
+                  "not known");
   }
   CTImage::Pointer image = reader->GetOutput();
   RequireEvenSpacing(series, image, folder);

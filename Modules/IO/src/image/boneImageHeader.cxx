@@ -65,13 +65,34 @@ RequireNumbers(const std::string &                        path,
       throw IOError(path, "is no readable image: its header's '" + name + "' holds " + wild);
     }
     const bool dimensions = name == "NDims" || name == "dimension";
-    if (dimensions && !(std::strtod(text.c_str(), nullptr) <= mostDimensions))
+    const double count = std::strtod(text.c_str(), nullptr);
+    if (dimensions && !(count >= 1.0 && count <= mostDimensions))
     {
       throw IOError(path, "is no image of three dimensions: its header's '" + name + "' is " + text);
     }
     if (name == "ElementNumberOfChannels" && std::strtod(text.c_str(), nullptr) != 1.0)
     {
       throw IOError(path, "has " + text + " components per voxel where one value is needed");
+    }
+  }
+}
+
+/** Refuses what MetaIO reads beyond its buffers: lines that are no "name = value", and texts as long as them. */
+void
+RequireMetaLines(const std::string &                        path,
+                 const std::map<std::string, std::string> & fields,
+                 const std::set<std::string> &              numbers)
+{
+  constexpr std::size_t longest = 250;
+  if (fields.count("ElementDataFile") == 0)
+  {
+    throw IOError(path, "is no readable image: its header does not say where the voxels are (ElementDataFile)");
+  }
+  for (const auto & [name, text] : fields)
+  {
+    if (name.empty() || name.size() > longest || (text.size() > longest && numbers.count(name) == 0))
+    {
+      throw IOError(path, "is no readable image: its header has a line that is damaged, or too long");
     }
   }
 }
@@ -145,7 +166,14 @@ ReadMetaHeader(std::istream & stream)
   while (fields.count("ElementDataFile") == 0 && GetField(stream, line, fields.size()))
   {
     const auto equals = line.find('=');
-    fields[Trim(line.substr(0, equals))] = equals == std::string::npos ? "" : Trim(line.substr(equals + 1));
+    if (equals != std::string::npos)
+    {
+      fields[Trim(line.substr(0, equals))] = Trim(line.substr(equals + 1));
+    }
+    else if (!Trim(line).empty())
+    {
+      fields[""] = line; // no field
+    }
   }
   return fields;
 }
@@ -168,20 +196,12 @@ RequireSensibleHeader(const std::string & path)
   std::ifstream stream(path, std::ios::binary);
   if (HasExtension(path, ".mha") || HasExtension(path, ".mhd"))
   {
-    RequireNumbers(path,
-                   ReadMetaHeader(stream),
-                   { "TransformMatrix",
-                     "Rotation",
-                     "Orientation",
-                     "Offset",
-                     "Position",
-                     "Origin",
-                     "CenterOfRotation",
-                     "ElementSpacing",
-                     "ElementSize",
-                     "DimSize",
-                     "HeaderSize" },
-                   10.0);
+    const auto                  fields = ReadMetaHeader(stream);
+    const std::set<std::string> numbers{ "TransformMatrix", "Rotation", "Orientation",      "Offset",
+                                         "Position",        "Origin",   "CenterOfRotation", "ElementSpacing",
+                                         "ElementSize",     "DimSize",  "HeaderSize" };
+    RequireMetaLines(path, fields, numbers);
+    RequireNumbers(path, fields, numbers, 10.0);
   }
   else if (HasExtension(path, ".nrrd") || HasExtension(path, ".nhdr"))
   {

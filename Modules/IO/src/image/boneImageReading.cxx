@@ -12,6 +12,7 @@
 #include <itkImageFileReader.h>
 #include <itkImageIOFactory.h>
 #include <itkImageRegionConstIteratorWithIndex.h>
+#include <vnl/vnl_det.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,31 @@ SizeText(const itk::ImageIOBase * io)
     text += Say(d > 0 ? " x " : "", io->GetDimensions(d));
   }
   return text;
+}
+
+/** Throws where the axes span no space, or voxels have no size: ITK would speak of matrices. */
+void
+RequireAxes(const std::string & path, const itk::ImageIOBase * io)
+{
+  constexpr double       smallest = 1e-6; // of the volume that axes of length 1 span
+  const unsigned int     dimensions = std::min(3u, io->GetNumberOfDimensions());
+  CTImage::DirectionType axes;
+  axes.SetIdentity();
+  for (unsigned int d = 0; d < dimensions; ++d)
+  {
+    for (unsigned int k = 0; k < dimensions; ++k)
+    {
+      axes(k, d) = io->GetDirection(d)[k];
+    }
+    if (!(io->GetSpacing(d) > 0.0))
+    {
+      throw IOError(path, Say("has voxels of ", io->GetSpacing(d), " mm: correct the header"));
+    }
+  }
+  if (!(std::abs(vnl_det(axes.GetVnlMatrix())) > smallest))
+  {
+    throw IOError(path, "its header's axes (direction) lie in one plane or are empty: correct the header");
+  }
 }
 
 itk::ImageIOBase::Pointer
@@ -57,11 +83,16 @@ OpenImage(const std::string & path)
     if (text.find("orthonormal") != std::string::npos)
     {
       throw IOError(path,
-                    "its axes are not at right angles (a sheared direction in the header): resample it to an "
-                    "orthogonal grid, or correct the header's sform and qform");
+                    "its axes are not at right angles (a sheared, empty or tiny direction in the header: are its units "
+                    "mm?): resample it to an orthogonal grid, or correct the header's sform and qform");
     }
-    throw IOError(path, "is no readable image: " + text);
+    throw IOError(path, "is no readable image: its header is damaged, or of a form that is not known");
   }
+  if (io->GetComponentType() == itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE)
+  {
+    throw IOError(path, "is no readable image: its header names no known kind of number for the voxels");
+  }
+  RequireAxes(path, io);
   for (unsigned int d = 3; d < io->GetNumberOfDimensions(); ++d)
   {
     if (io->GetDimensions(d) > 1)
@@ -127,9 +158,9 @@ LoadImage(const std::string & path, itk::ImageIOBase * io)
   {
     throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
   }
-  catch (const itk::ExceptionObject & error)
+  catch (const itk::ExceptionObject &)
   {
-    throw IOError(path, "is no readable image: " + ErrorLine(error));
+    throw IOError(path, "is no readable image: its voxels are damaged, or compressed in a way that is not known");
   }
   typename TImage::Pointer image = reader->GetOutput();
   image->DisconnectPipeline();

@@ -18,10 +18,6 @@ namespace bone
 {
 class AtomicFile;
 
-/** Throws IOError unless the path names a regular file that is not empty and can be opened. */
-void
-RequireReadableFile(const std::string & path);
-
 /** Throws IOError unless the path ends (in any case) in one of the extensions, given with their dots. */
 void
 RequireExtension(const std::string & path, const std::vector<std::string> & extensions);
