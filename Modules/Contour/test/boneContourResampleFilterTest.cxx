@@ -217,6 +217,20 @@ TEST(ContourResampleFilter, NestedContoursKeepTheirDistanceAtAnySpacing)
   }
 }
 
+TEST(ContourResampleFilter, ReportsSamplesMovedToKeepTheDistance)
+{
+  const auto run = [](double inner) {
+    auto filter = Resampler(OneSlice({ Ellipse(20, 20, 400), Ellipse(inner, inner, 400) }, { 0, 1 }), 4.0);
+    filter->SetMinimumLayerDistance(1.0);
+    filter->Update();
+    return filter;
+  };
+  EXPECT_EQ(run(17.0)->GetReport().moved, 0);
+  const auto tight = run(19.5); // all of the inner contour is too near
+  EXPECT_GE(LeastDistance(*tight->GetOutput(), 0, 1), 1.0 - 1e-9);
+  EXPECT_GE(tight->GetReport().moved, static_cast<int>(tight->GetOutput()->GetSlices()[0].contours[1].points.size()));
+}
+
 TEST(ContourResampleFilter, InnerContoursOfOneLayerKeepTheirDistanceFromEachOther)
 {
   // Two halves of a trabecular layer, 0.9 mm apart, wavy where they face each other.

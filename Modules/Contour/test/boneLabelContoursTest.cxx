@@ -100,6 +100,22 @@ TEST(LabelField, KeepsPlatesOfOneVoxelGapsAndHoles)
   EXPECT_NEAR(area, label, 0.01 * label);
 }
 
+TEST(LabelField, ContoursOfAFewVoxelsHaveTheirArea)
+{
+  // Beside a large bone a rod of 13 voxels, which smoothing alone would shrink below the least area.
+  const VoxelBox box = Box();
+  const Vector2  rod(11.1, 0.3);
+  const auto     flags =
+    Voxels(box, [&](const Vector3 & p) { return p.head<2>().norm() < 7.0 || (p.head<2>() - rod).norm() < 1.3; });
+  const LabelField field(box, flags, 0.8, Execution());
+  int              dropped = 0;
+  const auto       pieces = ContoursOfLabel(field, PlaneOf(box), Vector3::UnitX(), Vector3::UnitY(), 0.0, 4.5, dropped);
+  EXPECT_EQ(dropped, 0);
+  ASSERT_EQ(pieces.size(), 2u);
+  const double area = std::min(SignedArea(pieces[0].outer), SignedArea(pieces[1].outer));
+  EXPECT_NEAR(area, 13 * 0.36, 0.05 * 13 * 0.36);
+}
+
 TEST(LabelField, BetweenSlicesTheContourLiesBetweenTheirs)
 {
   const VoxelBox   box = Box();

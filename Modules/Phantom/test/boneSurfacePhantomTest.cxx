@@ -199,6 +199,35 @@ TEST(SurfacePhantom, BlurKeepsTheMassOfTheBall)
   }
 }
 
+TEST(SurfacePhantom, TheCortexChangesFromEndToShaftOverTheTransition)
+{
+  const Shape              box = Box({ 10, 10, 50 });
+  SurfacePhantomParameters p;
+  p.shaftStart = 0.2;
+  p.shaftEnd = 0.9;
+  p.transition = 0.1;
+  p.endDensity = 500;
+  p.shaftDensity = 1500;
+  const SurfacePhantom bone(box.points, box.triangles, p);
+  const auto           densityAt = [&](double fraction) {
+    const auto    axis = bone.GetLongitudinalAxis();
+    const Vector3 x = axis.point + fraction * bone.GetLength() * axis.direction;
+    return bone.EvaluateMaterials(x, bone.EvaluateLevels(x))[1];
+  };
+  for (const double end : { 0.02, 0.2, 0.9, 0.98 })
+  {
+    EXPECT_NEAR(densityAt(end), 500, 1e-6) << end;
+  }
+  for (const double middle : { 0.25, 0.85 })
+  {
+    EXPECT_NEAR(densityAt(middle), 1000, 1e-6) << middle;
+  }
+  for (const double shaft : { 0.3, 0.5, 0.8 })
+  {
+    EXPECT_NEAR(densityAt(shaft), 1500, 1e-6) << shaft;
+  }
+}
+
 TEST(SurfacePhantom, LongBoneHasNestedLayersAndACavityInItsShaft)
 {
   Shape bar = Icosphere(1.0, 4);
