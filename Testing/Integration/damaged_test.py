@@ -123,12 +123,47 @@ class Damaged(TestCase):
                         ["build", "ct.mha", "--labels", "l.nii.gz", "--slice-step", "1e-300", "-o", "o"]):
             self.refuse_usage(*command, says=command[-4])
 
+    def test_errors_of_the_stages_name_the_files(self):
+        self.mesh()
+        write_image("far.nii", numpy.ones((8, 8, 8), numpy.int16))
+        with open("far.nii", "r+b") as file:
+            file.seek(280)
+            file.write(struct.pack("<12f", 1, 0, 0, 900, 0, 1, 0, 900, 0, 0, 1, 900))
+        self.refuse("fit", "far.nii", "m.vtu", "--degree", 1, "-o", "o.vtu", says="far.nii, m.vtu: The mesh lies wholly outside")
+        for command in (["crop", "ct.mha", "--labels", "far.nii", "-o", "o.mha"],
+                        ["build", "ct.mha", "--labels", "far.nii", "-o", "o"]):
+            self.refuse(*command, says="ct.mha, far.nii: The label map does not cover the CT")
+        self.refuse("voxels", "m.vtu", "-o", "o.mha", says="m.vtu: The input 'Mesh' has no density: fit one first.")
+        write_image("small.nii", numpy.ones((8, 8, 8), numpy.int16), (1e-3,) * 3)
+        self.refuse("build", "small.nii", "--labels", "small.nii", "-o", "o", says="small.nii: The CT holds no bone: no voxel")
+
+    def test_lists_and_tables(self):
+        def write(name, text):
+            with open(name, "w") as file:
+                file.write(text)
+        for text, says in (("", "is empty"), ("#\n", "two subjects or more"), ("m.vtu\nn.vtu\n", "line 1: there is no file m.vtu"),
+                           ("ct.mha\nct.mha, no.mha\n", "line 2: there is no file no.mha"), ("m.vtu\0\n", "line 1 is no text"),
+                           ("ct.mha\nct.mha\n", "put one first in list.txt")):
+            write("list.txt", text)
+            self.refuse("train", "list.txt", "-o", "o.h5", code=2 if "put" in says else 1, says="list.txt")
+            self.refuse("train", "list.txt", "-o", "o.h5", code=2 if "put" in says else 1, says=says)
+        write_json({"parameters": {"plan": {"a\n\u007fb": 1}}}, "report.json")
+        self.refuse("build", "--parameters", "report.json", "-o", "o", says="report.json: plan.a  b is no parameter")
+        self.mesh()
+        self.succeed("fit", "ct.mha", "m.vtu", "--degree", 1, "-o", "d.vtu")
+        for references in ({}, [], 3, {"references": 3}, {"references": []}):
+            write_json(references, "r.json")
+            self.refuse("calibrate", "d.vtu", "--references", "r.json", "--to", "ash", "-o", "o.vtu",
+                        says="r.json: must hold a list of one reference or more")
+        self.refuse_usage("calibrate", "d.vtu", "-o", "o.vtu", says="--line, --references or --law is required")
+
     def test_pipes_and_devices_are_refused_at_once(self):
         os.mkfifo("pipe")
         for name in ("pipe", "/dev/zero", "/dev/null"):
             self.refuse("info", name, says="no regular file")
             self.refuse("build", "ct.mha", "--labels", name, "-o", "out", says="no regular file")
             self.refuse("drr", "ct.mha", "--geometry", name, "-o", "o.mha", says="no regular file")
+            self.refuse("train", name, "-o", "o.h5", says="no regular file")
 
 
 class Outputs(TestCase):
