@@ -23,7 +23,8 @@ protected:
   void
   SetUp() override
   {
-    m_Folder = std::filesystem::path(testing::TempDir()) / "boneTransformIOTest";
+    const auto * test = testing::UnitTest::GetInstance()->current_test_info(); // tests run side by side
+    m_Folder = std::filesystem::path(testing::TempDir()) / (std::string("boneTransformIOTest.") + test->name());
     std::filesystem::remove_all(m_Folder);
     std::filesystem::create_directories(m_Folder);
   }
