@@ -293,6 +293,12 @@ TEST_F(ImageIOTest, RefusesMetaHeadersThatItksReaderCannotBear)
   }
   EXPECT_THAT(error("DimSize = 4 4 4\nElementType = MET_ODD\n"), HasSubstr("no known kind of number"));
   EXPECT_THAT(error("NDims = -3\n" + grid), HasSubstr("its header's 'NDims' is -3"));
+  for (const char * size : { "-1e300", "-1", "1e9", "nan" })
+  {
+    EXPECT_THAT(error("CompressedData = True\nCompressedDataSize = " + std::string(size) + '\n' + grid),
+                HasSubstr("m.mhd: is cut short or damaged"))
+      << size;
+  }
   for (const char * axes : { "0 0 0 0 0 0 0 0 0", "1 0 0 1 0 0 0 0 1" })
   {
     EXPECT_THAT(error("TransformMatrix = " + std::string(axes) + '\n' + grid),

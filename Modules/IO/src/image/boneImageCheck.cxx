@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -224,7 +225,9 @@ CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
   const fs::path  file = local ? fs::path(path) : fs::path(path).parent_path() / data;
   std::error_code error;
   const auto      size = fs::file_size(file, error);
-  check.whole = !error && numberOfBytes > 0;
+  // MetaIO asks for as much memory as the header says that the compressed data need; 0 where it does not say.
+  const double compressed = std::strtod(fields["CompressedDataSize"].c_str(), nullptr);
+  check.whole = !error && numberOfBytes > 0 && compressed >= 0.0 && compressed <= static_cast<double>(size);
   if (check.whole)
   {
     check.whole =
