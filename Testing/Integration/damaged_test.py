@@ -129,7 +129,8 @@ class Damaged(TestCase):
         with open("far.nii", "r+b") as file:
             file.seek(280)
             file.write(struct.pack("<12f", 1, 0, 0, 900, 0, 1, 0, 900, 0, 0, 1, 900))
-        self.refuse("fit", "far.nii", "m.vtu", "--degree", 1, "-o", "o.vtu", says="far.nii, m.vtu: The mesh lies wholly outside")
+        self.refuse("fit", "far.nii", "m.vtu", "--degree", 1, "-o", "o.vtu",
+                    says="far.nii, m.vtu: The mesh lies wholly outside")
         for command in (["crop", "ct.mha", "--labels", "far.nii", "-o", "o.mha"],
                         ["build", "ct.mha", "--labels", "far.nii", "-o", "o"]):
             self.refuse(*command, says="ct.mha, far.nii: The label map does not cover the CT")
