@@ -40,7 +40,8 @@ struct RigidRegistrationResult
   bool                        converged{ false }; ///< the refinement ended before its steps ran out
   RegistrationQuality         quality{ RegistrationQuality::Failed };
   /** How much the cost rises, on average over the six motions, where the model is moved by 8 mm, over the cost. A wrong
-   * minimum is flat: on bones of four CTs true poses have 0.42 and more, wrong ones 0.43 and less, most 0.28. */
+   * minimum is flat: with two views, on four bones, true poses have 0.42 and more, wrong ones 0.43 and less, most
+   * 0.28. One view does not always tell: wrong poses of a long bone have up to 1. */
   double distinctness{ 0.0 };
   int    searches{ 0 };
 };
