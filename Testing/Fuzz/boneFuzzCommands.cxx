@@ -98,7 +98,7 @@ RunCommand(const std::string &              program,
            const std::string &              log)
 {
   std::vector<std::string> words = Words(line);
-  const std::string        command = words.front();
+  const std::string        command = words[0] == "register" ? words[0] + ' ' + words[1] : words[0];
   words.insert(words.begin(), program);
   words.insert(words.end(), { "--threads", "1" });
   const auto        before = Listing(folder);

@@ -11,6 +11,7 @@
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneLabelChoice.h"
+#include "boneLandmarkIO.h"
 #include "boneMeshIO.h"
 #include "boneMeshValidator.h"
 #include "boneModelIO.h"
@@ -18,6 +19,12 @@
 #include "boneSurfaceLabels.h"
 #include "boneTetraCollapseFilter.h"
 #include "boneTetraSmoothingFilter.h"
+#include "boneTransformIO.h"
+#include "boneXRayIO.h"
+
+#include <Eigen/Eigenvalues> // stands for the older one of ITK's own that its transforms bring
+
+#include <itkEuler3DTransform.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -28,6 +35,9 @@ namespace
 {
 namespace fs = std::filesystem;
 using Mesh = DensityMesh<double>;
+
+/** Refines a pose, with few pixels. */
+const std::string Register = "register rigid --search 0 0 --pixels 20 --no-collimator ";
 
 std::string
 Beside(const std::string & path, const char * name)
@@ -136,9 +146,27 @@ UseImage(const std::string & path)
 }
 
 void
-UseRadiograph(const std::string & path)
+UseXRay(const std::string & path)
 {
-  ReadRadiograph(path);
+  ReadXRay(path);
+}
+
+void
+UseTransform(const std::string & path)
+{
+  ReadRigidTransform(path);
+}
+
+void
+UseLandmarks(const std::string & path)
+{
+  ReadLandmarks(path);
+}
+
+void
+UseImageLandmarks(const std::string & path)
+{
+  ReadImageLandmarks(path, ReadGeometry(Beside(path, "view.json")).front()->GetView());
 }
 
 void
@@ -181,9 +209,9 @@ SameImage(const std::string & a, const std::string & b)
 }
 
 bool
-SameRadiograph(const std::string & a, const std::string & b)
+SameXRay(const std::string & a, const std::string & b)
 {
-  return SameBuffer(*ReadRadiograph(a), *ReadRadiograph(b));
+  return SameBuffer(*ReadXRay(a).image, *ReadXRay(b).image);
 }
 
 bool
@@ -239,6 +267,12 @@ bool
 SameHeaderedImage(const std::string & a, const std::string & b)
 {
   return SameImage(Beside(a, "ct.mhd"), Beside(b, "ct.mhd"));
+}
+
+bool
+SamePair(const std::string & a, const std::string & b)
+{
+  return SameImage(Beside(a, "pair.hdr"), Beside(b, "pair.hdr"));
 }
 
 void
@@ -322,6 +356,20 @@ ImageFormats()
       length,
       SameHeaderedImage,
       { "ct.mhd", "ct.raw" } },
+    { "pair.hdr",
+      UseImage,
+      { "info pair.hdr", "crop pair.hdr --labels labels.mha -o out/ct.mha" },
+      false,
+      Payload::Unchecked,
+      nullptr,
+      { "pair.hdr", "pair.img" } },
+    { "pair.img",
+      With("pair.hdr", UseImage),
+      { "info pair.hdr", "fit pair.img model_L2.vtu --degree 0 -o out/fit.vtu" },
+      false,
+      length,
+      SamePair,
+      { "pair.hdr", "pair.img" } },
     { "ct.nrrd",
       UseImage,
       { "info ct.nrrd",
@@ -348,7 +396,16 @@ ImageFormats()
       length,
       SameFolder,
       { "dicom" } },
-    { "xray.dcm", UseRadiograph, { "info xray.dcm" }, false, length, SameRadiograph },
+    { "xray.dcm", UseXRay, { "info xray.dcm" }, false, length, SameXRay },
+    { "xray_rle.dcm", UseXRay, { "info xray_rle.dcm" } },
+    { "xray_jpeg.dcm", UseXRay, { "info xray_jpeg.dcm" } },
+    { "xray_jpeg2000.dcm", UseXRay, { "info xray_jpeg2000.dcm" } },
+    { "radiograph.mha",
+      UseXRay,
+      { "info radiograph.mha", Register + "model_L2.vtu --xray radiograph.mha --geometry view.json -o out/pose" },
+      false,
+      length,
+      SameXRay },
     { "names.csv",
       UseLabelTable,
       { "crop ct.mha --labels labels.mha --label-names names.csv --label 1 -o out/ct.mha" } },
@@ -402,7 +459,8 @@ ShapeFormats()
         "voxels model_L1.vtu --spacing 4 -o out/voxels.mha",
         "profile model_L1.vtu --from 0 17 17 --to 34 17 17 --points 20 -o out/profile.csv",
         "calibrate model_L1.vtu --line 0.001 0.1 --to ash -o out/ash.vtu",
-        "fit ct.mha model_L1.vtu --degree 1 -o out/fit.vtu" },
+        "fit ct.mha model_L1.vtu --degree 1 -o out/fit.vtu",
+        Register + "model_L1.vtu --xray radiograph.mha --geometry view.json -o out/pose" },
       false,
       Payload::Base64,
       SameMesh },
@@ -467,6 +525,17 @@ OtherFormats()
       Payload::Length,
       SameModel },
     { "subjects.txt", UseSubjects, { "train subjects.txt --degree 0 -o out/atlas.h5" } },
+    { "pose.tfm",
+      UseTransform,
+      { Register + "model_L2.vtu --xray radiograph.mha --geometry view.json --initial pose.tfm -o out/pose" } },
+    { "landmarks.mrk.json",
+      UseLandmarks,
+      { Register + "model_L2.vtu --xray radiograph.mha --geometry view.json --landmarks landmarks.mrk.json "
+                   "--xray-landmarks points.json -o out/pose" } },
+    { "points.json",
+      UseImageLandmarks,
+      { Register + "model_L2.vtu --xray radiograph.mha --geometry view.json --landmarks landmarks.mrk.json "
+                   "--xray-landmarks points.json -o out/pose" } },
     { "references.json",
       nullptr,
       { "calibrate model_L2.vtu --references references.json --ct ct.mha --labels labels.mha --to k2hpo4 -o "

@@ -11,17 +11,22 @@
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneImageIO.h"
+#include "boneLandmarkIO.h"
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
 #include "boneStatisticalModelEstimator.h"
+#include "boneTestDicom.h"
 #include "boneTestStructures.h"
+#include "boneTransformIO.h"
 
 #include <Eigen/Eigenvalues> // stands for the older one of ITK's own that its image formats bring
 
+#include <itkEuler3DTransform.h>
 #include <itkGDCMImageIO.h>
 #include <itkImageFileWriter.h>
 #include <itkMath.h>
 #include <itkMetaDataObject.h>
+#include <itkNiftiImageIO.h>
 
 #include <cmath>
 #include <filesystem>
@@ -120,7 +125,7 @@ SliceOf(const CTImage * ct, int z)
   return image;
 }
 
-/** The CT as a series, and a slice of it as a radiograph. */
+/** The CT as a series, and a slice of it as a radiograph, plain and compressed. */
 void
 WriteDicoms(const CTImage * ct, const std::string & folder)
 {
@@ -140,6 +145,10 @@ WriteDicoms(const CTImage * ct, const std::string & folder)
     WriteDicom(SliceOf(ct, z), attributes, folder + "/dicom/" + std::to_string(z) + ".dcm");
   }
   WriteDicom(SliceOf(ct, Size / 2), common("1.2.840.10008.5.1.4.1.1.1.1", "DX"), folder + "/xray.dcm");
+  using Syntax = gdcm::TransferSyntax;
+  TransferDicom(folder + "/xray.dcm", Syntax::RLELossless, folder + "/xray_rle.dcm");
+  TransferDicom(folder + "/xray.dcm", Syntax::JPEGLosslessProcess14_1, folder + "/xray_jpeg.dcm");
+  TransferDicom(folder + "/xray.dcm", Syntax::JPEG2000Lossless, folder + "/xray_jpeg2000.dcm");
 }
 
 /** The surface as ASCII STL and PLY, and as VTK's XML by way of text. */
@@ -269,6 +278,11 @@ WriteImages(const CTImage * ct, const LabelImage * labels, const std::string & f
   {
     WriteImage(labels, folder + "/" + name);
   }
+  auto pair = itk::ImageFileWriter<CTImage>::New(); // as two files, which BoneTK reads and does not write
+  pair->SetImageIO(itk::NiftiImageIO::New());
+  pair->SetInput(ct);
+  pair->SetFileName(folder + "/pair.hdr");
+  pair->Update();
   WriteSegments(labels, folder + "/segments.seg.nrrd");
   WriteDicoms(ct, folder);
 }
@@ -308,6 +322,26 @@ WriteTexts(const std::string & folder)
                 {"name": "rod", "density": 800, "from": [17, 17, 4], "to": [17, 17, 8], "radius": 2}]})");
   WriteText(folder + "/rtk.json", R"({"rtk": "geometry.xml", "size": [20, 20], "spacing": [2, 2]})");
 }
+/** What registration begins with: a pose, landmarks, and where they lie on the view. */
+void
+WritePose(const XRayGeometry & view, const std::string & folder)
+{
+  auto pose = itk::Euler3DTransform<double>::New();
+  pose->SetRotation(0.02, -0.01, 0.03);
+  WriteRigidTransform(*pose, folder + "/pose.tfm");
+  const std::vector<Landmark> landmarks = {
+    { "top", { 17, 17, 30 } }, { "front", { 17, 4, 17 } }, { "left", { 30, 17, 16 } }, { "low", { 12, 20, 5 } }
+  };
+  WriteLandmarks(landmarks, folder + "/landmarks.mrk.json");
+  std::string points;
+  for (const Landmark & landmark : landmarks)
+  {
+    const Vector2 p = view.ProjectPoint(landmark.point);
+    points += (points.empty() ? "{\"" : ", \"") + landmark.name + "\": [" + std::to_string(p.x()) + ", " +
+              std::to_string(p.y()) + "]";
+  }
+  WriteText(folder + "/points.json", points + "}");
+}
 } // namespace
 
 void
@@ -339,6 +373,8 @@ WriteFuzzSeeds(const std::string & folder)
   WriteGeometry({ view }, folder + "/matrix.json", GeometryConvention::Matrix);
   WriteGeometry({ view }, folder + "/plastimatch.json", GeometryConvention::Plastimatch);
   WriteRtkGeometry({ view }, folder + "/geometry.xml");
+  WriteImage(pipeline.GetRadiograph(1)->GetOutput(), folder + "/radiograph.mha");
+  WritePose(*view, folder);
   BuildParameters parameters;
   pipeline.GetParameters(parameters);
   parameters.plan.tetrahedra = 500;

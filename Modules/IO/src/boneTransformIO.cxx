@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include <Eigen/Eigenvalues> // in place of that of ITK's own, older Eigen
 #include <itkEuler3DTransform.h>
-#include <itkTransformFileReader.h>
+#include <itkTransformFactoryBase.h>
 #include <itkTransformFileWriter.h>
 
 #include "boneTransformIO.h"
@@ -13,8 +13,15 @@
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <vector>
 
 namespace bone
 {
@@ -22,7 +29,75 @@ namespace
 {
 constexpr std::uintmax_t LargestTransformFile = 1 << 20; ///< one has some 300 bytes
 
-itk::TransformBaseTemplate<double>::Pointer
+using AnyTransform = itk::TransformBaseTemplate<double>;
+
+/** The words behind "NAME:" in the one line that begins so. */
+std::vector<std::string>
+WordsOfLine(const std::vector<std::string> & lines, const std::string & name)
+{
+  const std::string        heading = name + ':';
+  std::vector<std::string> words;
+  int                      count = 0;
+  for (const std::string & line : lines)
+  {
+    if (line.rfind(heading, 0) == 0)
+    {
+      std::istringstream stream(line.substr(heading.size()));
+      words.assign(std::istream_iterator<std::string>(stream), {});
+      ++count;
+    }
+  }
+  if (name == "Transform" && count > 1)
+  {
+    Refuse("holds ", count, " transforms; give a file of one rigid transform");
+  }
+  if (count != 1)
+  {
+    Refuse("is no ITK transform file: it has ",
+           count == 0 ? "no line" : "more than one line",
+           " that begins with ",
+           heading);
+  }
+  return words;
+}
+
+AnyTransform::ParametersType
+NumbersOfLine(const std::vector<std::string> & lines, const std::string & name)
+{
+  const auto                   words = WordsOfLine(lines, name);
+  AnyTransform::ParametersType numbers(static_cast<itk::SizeValueType>(words.size()));
+  for (std::size_t i = 0; i < words.size(); ++i)
+  {
+    char * end = nullptr;
+    numbers[static_cast<itk::SizeValueType>(i)] = std::strtod(words[i].c_str(), &end);
+    if (*end != '\0' || !std::isfinite(numbers[static_cast<itk::SizeValueType>(i)]))
+    {
+      Refuse("has among its ", name, " something that is no number");
+    }
+  }
+  return numbers;
+}
+
+/** A transform of the class that ITK's files call so, "Euler3DTransform_double_3_3". */
+AnyTransform::Pointer
+MakeTransform(std::string name)
+{
+  if (const std::size_t type = name.find("_float_"); type != std::string::npos)
+  {
+    name.replace(type, std::strlen("_float_"), "_double_");
+  }
+  itk::TransformFactoryBase::RegisterDefaultTransforms();
+  const itk::LightObject::Pointer made = itk::ObjectFactoryBase::CreateInstance(name.c_str());
+  const AnyTransform::Pointer     transform = dynamic_cast<AnyTransform *>(made.GetPointer());
+  if (transform.IsNull())
+  {
+    Refuse("has a transform that is not known");
+  }
+  return transform;
+}
+
+/** ITK's own reader of these files does not see where parameters are missing. */
+AnyTransform::Pointer
 ReadOneTransform(const std::string & path)
 {
   RequireReadableFile(path);
@@ -31,22 +106,37 @@ ReadOneTransform(const std::string & path)
   {
     Refuse("is no transform file: it has more than a megabyte");
   }
-  auto reader = itk::TransformFileReaderTemplate<double>::New();
-  reader->SetFileName(path);
+  std::ifstream            file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);)
+  {
+    lines.push_back(line);
+  }
+  const auto name = WordsOfLine(lines, "Transform");
+  const auto transform = MakeTransform(name.empty() ? "" : name.front());
+  const auto fixed = NumbersOfLine(lines, "FixedParameters");
+  const auto values = NumbersOfLine(lines, "Parameters");
+  // An Euler3DTransform's fixed parameters have one that older files lack.
+  const auto fixedCount = transform->GetFixedParameters().size();
+  if (fixed.size() > fixedCount || fixed.size() < std::min<std::size_t>(fixedCount, 3))
+  {
+    Refuse("has ", fixed.size(), " FixedParameters, where its transform needs ", fixedCount);
+  }
+  const auto count = transform->GetNumberOfParameters();
+  if (values.size() != count)
+  {
+    Refuse("has ", values.size(), " Parameters, where its transform needs ", count);
+  }
   try
   {
-    reader->Update();
+    transform->SetFixedParameters(fixed);
+    transform->SetParameters(values);
   }
   catch (const itk::ExceptionObject &)
   {
-    Refuse("is no ITK transform file, or has a transform that is not known");
+    Refuse("has parameters that its transform does not take");
   }
-  const auto * transforms = reader->GetTransformList();
-  if (transforms->size() != 1)
-  {
-    Refuse("holds ", transforms->size(), " transforms; give a file of one rigid transform");
-  }
-  return transforms->front();
+  return transform;
 }
 } // namespace
 

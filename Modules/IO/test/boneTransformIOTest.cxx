@@ -109,4 +109,26 @@ TEST_F(TransformIO, RefusesWhatIsNotRigid)
   std::ofstream(Path("text.tfm")) << "hello\n";
   EXPECT_THAT(Refusal(Path("text.tfm")), HasSubstr("no ITK transform file"));
 }
+
+TEST_F(TransformIO, RefusesMissingAndWildNumbers)
+{
+  using ::testing::HasSubstr;
+  const std::string euler = "Euler3DTransform_double_3_3";
+  EXPECT_THAT(Refusal(Write("short.tfm", euler, "-0.01 0.03 0 0 0", "0 0 0 0")), HasSubstr("has 5 Parameters"));
+  EXPECT_THAT(Refusal(Write("long.tfm", euler, "0 0 0 0 0 0 0", "0 0 0 0")), HasSubstr("has 7 Parameters"));
+  EXPECT_THAT(Refusal(Write("centre.tfm", euler, "0 0 0 0 0 0", "0 0")), HasSubstr("has 2 FixedParameters"));
+  EXPECT_THAT(Refusal(Write("nan.tfm", euler, "0 0 0 nan 0 0", "0 0 0 0")), HasSubstr("no number"));
+  EXPECT_THAT(Refusal(Write("word.tfm", euler, "0 0 0 1x 0 0", "0 0 0 0")), HasSubstr("no number"));
+  EXPECT_THAT(Refusal(Write("other.tfm", "NoSuchTransform_double_3_3", "0", "0")), HasSubstr("not known"));
+  EXPECT_THAT(Refusal(Write("two.tfm", euler, "0 0 0 0 0 0\nTransform: " + euler, "0 0 0")), HasSubstr("2 transforms"));
+  EXPECT_THAT(Refusal(Write("twice.tfm", euler, "0 0 0 0 0 0\nParameters: 1 0 0 0 0 0", "0 0 0")),
+              HasSubstr("more than one line"));
+}
+
+TEST_F(TransformIO, TakesFilesOfOlderVersionsAndSinglePrecision)
+{
+  const auto read = bone::ReadRigidTransform(Write("old.tfm", "Euler3DTransform_float_3_3", "0 0 0 1 2 3", "4 5 6"));
+  EXPECT_EQ(read->GetTranslation()[2], 3.0);
+  EXPECT_EQ(read->GetCenter()[0], 4.0);
+}
 } // namespace

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneXRayIO.h"
 
+#include "boneTestDicom.h"
 #include "boneTestFiles.h"
 #include "boneXRayConventions.h"
 
@@ -268,5 +269,35 @@ TEST_F(XRayIO, RefusesSeveralFrames)
   file.getDataset()->putAndInsertUint16Array(DCM_PixelData, pixels.data(), pixels.size());
   ASSERT_TRUE(file.saveFile(Path("m.dcm").c_str(), EXS_LittleEndianExplicit).good());
   EXPECT_THAT(ErrorOf([&] { ReadXRay(Path("m.dcm")); }), HasSubstr("2 frames where one is needed"));
+}
+
+TEST_F(XRayIO, CompressedImagesAreReadUnlessTheirSizeIsAnother)
+{
+  const std::string plain = Write();
+  const auto        image = ReadXRay(plain).image;
+  using Syntax = gdcm::TransferSyntax;
+  for (const auto syntax : { Syntax::RLELossless, Syntax::JPEGLosslessProcess14_1 })
+  {
+    TransferDicom(plain, syntax, Path("c.dcm"));
+    const auto read = ReadXRay(Path("c.dcm")).image;
+    EXPECT_TRUE(
+      std::equal(image->GetBufferPointer(), image->GetBufferPointer() + Columns * Rows, read->GetBufferPointer()));
+    DcmFileFormat file;
+    ASSERT_TRUE(file.loadFile(Path("c.dcm").c_str()).good());
+    // Without colours RLE's segments tell the bytes of a pixel alone.
+    const auto & key = syntax == Syntax::RLELossless ? DCM_SamplesPerPixel : DCM_Rows;
+    file.getDataset()->putAndInsertUint16(key, syntax == Syntax::RLELossless ? 3 : Rows - 1);
+    ASSERT_TRUE(file.saveFile(Path("d.dcm").c_str()).good());
+    EXPECT_THAT(ErrorOf([&] { ReadXRay(Path("d.dcm")); }), HasSubstr("pixels are damaged"));
+  }
+}
+
+TEST_F(XRayIO, CompressedImagesHaveToHaveTheirPixels)
+{
+  TransferDicom(Write(), gdcm::TransferSyntax::JPEGLosslessProcess14_1, Path("cut.dcm"));
+  std::string text = ReadText("cut.dcm");
+  text.resize(text.find("\xFF\xD8") - 16); // before the table of offsets
+  WriteText("cut.dcm", text);
+  EXPECT_THAT(ErrorOf([&] { ReadXRay(Path("cut.dcm")); }), HasSubstr("cut.dcm"));
 }
 } // namespace bone

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneDicomFile.h"
 
+#include "boneDicomFragments.h"
 #include "boneIOError.h"
 #include "boneImageHeader.h"
 
@@ -161,6 +162,8 @@ ReadWholeDicomFile(const std::string & path)
     throw IOError(path,
                   "is a DICOM file that is cut short or damaged, in its first part; copy it again from where it came");
   }
+  // Files that were sent without types and then stored with them have "unknown" types for elements that are known.
+  dcmEnableUnknownVRConversion.set(OFTrue);
   DcmFileFormat     file;
   const OFCondition read = file.loadFile(path.c_str());
   if (read.bad())
@@ -179,6 +182,10 @@ ReadWholeDicomFile(const std::string & path)
     throw IOError(path, "is a DICOM image whose pixels are not all there; copy it again from where it came");
   }
   RequireKnownPixels(data, path);
+  if (!plain && header.image)
+  {
+    NamingFile(path, [&data] { RequireWholeFragments(data); });
+  }
   header.path = path;
   header.series = Text(data, DCM_SeriesInstanceUID);
   header.number = Text(data, DCM_SeriesNumber);
