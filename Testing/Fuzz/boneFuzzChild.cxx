@@ -61,7 +61,7 @@ bool
 HasReport(const std::string & log)
 {
   const std::string text = ReadBytes(log);
-  return text.find("Sanitizer") != std::string::npos || text.find("runtime error:") != std::string::npos;
+  return text.find("ERROR: AddressSanitizer") != std::string::npos || text.find("runtime error:") != std::string::npos;
 }
 } // namespace
 

@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 using Mesh = DensityMesh<double>;
 
 /** Refines a pose, with few pixels. */
-const std::string Register = "register rigid --search 0 0 --pixels 20 --no-collimator ";
+const std::string Register = "register rigid --search 0 0 --pixels 32 --no-collimator ";
 
 std::string
 Beside(const std::string & path, const char * name)
@@ -441,7 +441,7 @@ ShapeFormats()
       { "info surface.stl", "contours ct.mha --labels surface.stl --slice-step 6 -o out/contours.vtp" } },
     { "surface.ply",
       UseSurface,
-      { "info surface.ply", "phantom --surface surface.ply --spacing 6 -o out/ct.mha --labels out/labels.mha" } },
+      { "info surface.ply", "phantom --surface surface.ply --spacing 12 -o out/ct.mha --labels out/labels.mha" } },
     { "surface_binary.stl",
       UseSurface,
       { "info surface_binary.stl", "crop ct.mha --labels surface_binary.stl -o out/ct.mha" } },

@@ -7,15 +7,13 @@
 // error of the translation and its standard deviations (mm). mTRE: mean displacement of the first level's points.
 #include <Eigen/Eigenvalues> // in place of that of ITK's own, older Eigen
 
-#include "boneAttenuationImageFilter.h"
 #include "boneHierarchyIO.h"
 #include "boneImageIO.h"
 #include "boneRigidRegistration.h"
-#include "boneVoxelDRRImageFilter.h"
+#include "boneXRaySimulation.h"
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
-#include <itkRecursiveGaussianImageFilter.h>
 #include <itkEuler3DTransform.h>
 
 #include <chrono>
@@ -27,91 +25,6 @@ namespace
 {
 using namespace bone;
 
-/** How an X-ray comes about. */
-struct XRaySimulation
-{
-  double photons{ 50000 }; ///< of the open beam, a pixel
-  double scatterToPrimary{ 0.6 };
-  double scatterWidth{ 30.0 }; ///< mm at the detector
-  double blur{ 0.5 };          ///< pixels
-};
-
-CTImage::Pointer
-Smooth(const CTImage * image, double sigma)
-{
-  CTImage::Pointer result;
-  for (unsigned int axis = 0; axis < 2; ++axis)
-  {
-    auto filter = itk::RecursiveGaussianImageFilter<CTImage, CTImage>::New();
-    filter->SetInput(axis == 0 ? image : result.GetPointer());
-    filter->SetDirection(axis);
-    filter->SetSigma(sigma);
-    filter->Update();
-    result = filter->GetOutput();
-    result->DisconnectPipeline();
-  }
-  return result;
-}
-
-/** Line integrals as a detector sees them: scatter, blur, photons, logarithm. */
-RadiographView
-Simulate(const CTImage *            ct,
-         const XRayGeometry::View & view,
-         const XRaySimulation &     simulation,
-         std::mt19937_64 &          random)
-{
-  auto attenuation = AttenuationImageFilter<CTImage, CTImage>::New();
-  attenuation->SetInput(ct);
-  attenuation->SetHUToAttenuation(HUToAttenuation::Bilinear);
-  auto geometry = XRayGeometry::New();
-  geometry->SetView(view);
-  auto drr = VoxelDRRImageFilter<CTImage, CTImage>::New();
-  drr->SetInput(attenuation->GetOutput());
-  drr->SetGeometry(geometry);
-  drr->Update();
-  CTImage::Pointer primary = drr->GetOutput();
-  const auto       pixels = primary->GetBufferedRegion().GetNumberOfPixels();
-  float *          p = primary->GetBufferPointer();
-  for (std::size_t i = 0; i < pixels; ++i)
-  {
-    p[i] = static_cast<float>(simulation.photons * std::exp(-p[i]));
-  }
-  const auto     scatter = Smooth(primary, simulation.scatterWidth);
-  const auto     sharp = Smooth(primary, simulation.blur * view.spacing[0]);
-  RadiographView result;
-  result.view = view;
-  for (std::size_t i = 0; i < pixels; ++i)
-  {
-    const double mean = sharp->GetBufferPointer()[i] + simulation.scatterToPrimary * scatter->GetBufferPointer()[i];
-    std::poisson_distribution<int> poisson(mean);
-    const double                   seen = std::max(1, poisson(random));
-    result.values.push_back(static_cast<float>(-std::log(seen / simulation.photons)));
-  }
-  return result;
-}
-
-/** A view of the model's box along a direction turned by `angle` degrees about z from the front, with some room. */
-XRayGeometry::View
-MakeView(const MeshArrays & mesh, double angle, int pixels)
-{
-  Vector3 lower = Vector3::Constant(1e30), upper = Vector3::Constant(-1e30);
-  for (const Vector3 & x : mesh.points)
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  const Vector3 room = 0.1 * (upper - lower);
-  const double  turn = angle * std::acos(-1.0) / 180.0;
-  auto          view = XRayGeometry::Framing(
-    lower - room, upper + room, { std::sin(turn), std::cos(turn), 0 }, { 0, 0, 1 }, 700, 1000, pixels);
-  // A square detector about the same centre.
-  const Vector3 centre = view.detectorOrigin + 0.5 * (view.size[0] - 1) * view.spacing[0] * view.detectorU +
-                         0.5 * (view.size[1] - 1) * view.spacing[1] * view.detectorV;
-  view.size = { { pixels, pixels } };
-  view.detectorOrigin =
-    centre - 0.5 * (pixels - 1) * (view.spacing[0] * view.detectorU + view.spacing[1] * view.detectorV);
-  return view;
-}
 struct Trials
 {
   std::string               ct;
@@ -168,7 +81,10 @@ Run(const Trials & trials)
   std::vector<RadiographView> views;
   for (const double angle : trials.angles)
   {
-    views.push_back(Simulate(ct, MakeView(levels.front(), angle, trials.pixels), trials.simulation, random));
+    views.push_back(Simulate(ct,
+                             MakeView(levels.front().points, Vector3::UnitY(), Vector3::UnitZ(), angle, trials.pixels),
+                             trials.simulation,
+                             random));
   }
   const Vector3 depth = views.front().view.detectorU.cross(views.front().view.detectorV).normalized();
   for (int i = 0; i < trials.count; ++i)

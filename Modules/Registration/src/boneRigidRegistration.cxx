@@ -3,9 +3,9 @@
  *=========================================================================*/
 #include "boneRigidRegistration.h"
 
-#include "boneBernstein.h"
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
+#include "boneMeanDensities.h"
 #include "bonePatchGradientCorrelation.h"
 #include "bonePrincipalModes.h"
 #include "boneRigidCost.h"
@@ -54,24 +54,6 @@ CentreOf(const MeshArrays & mesh)
 {
   const Vector3 sum = std::accumulate(mesh.points.begin(), mesh.points.end(), Vector3(Vector3::Zero()));
   return sum / static_cast<double>(mesh.points.size());
-}
-
-/** The mesh with the mean of each tetrahedron as its density: all that small images show of a coarse level. */
-MeshArrays
-WithMeanDensities(const MeshArrays & mesh)
-{
-  MeshArrays means = mesh;
-  means.maximumDegree = 0;
-  means.degree.assign(mesh.tetrahedra.size(), 0);
-  means.coefficients.resize(mesh.tetrahedra.size());
-  const auto row = static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree));
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-  {
-    const int      count = BernsteinCount(mesh.degree[t]);
-    const double * first = &mesh.coefficients[t * row];
-    means.coefficients[t] = std::accumulate(first, first + count, 0.0) / count;
-  }
-  return means;
 }
 
 /** Moves of the points by which the outer surface moves outward by 1 mm. */

@@ -1,0 +1,21 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneResidualModes_h
+#define boneResidualModes_h
+
+#include "boneStatisticalModel.h"
+
+namespace bone
+{
+/** \brief Smooth displacements with the variance of what an atlas' modes of shape leave of a new subject.
+ *
+ * The modes are those of SmoothModes (`length`, mm, `modes` at the most). Their variances, alike for each three of one
+ * shape, are those of the atlas' own subjects, each less its projection on the modes of the others (leave-one-out). The
+ * total variance is of all that is left, in these modes or not. Throws std::invalid_argument where the atlas has the
+ * scores of fewer than four subjects, and what SmoothModes throws. */
+PrincipalModes
+ResidualModes(const StatisticalModelContent & atlas, double length, int modes);
+} // namespace bone
+
+#endif

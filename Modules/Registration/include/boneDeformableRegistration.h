@@ -1,0 +1,61 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDeformableRegistration_h
+#define boneDeformableRegistration_h
+
+#include "boneDeformableRadiographParameters.h"
+#include "boneExecution.h"
+#include "boneRadiographView.h"
+#include "boneRigidRegistration.h"
+#include "boneStatisticalModel.h"
+
+#include <functional>
+
+namespace bone
+{
+/** \struct DeformableRegistrationResult
+ * \brief What comes of a deformable registration: the most probable bone, and how sure it is. */
+struct DeformableRegistrationResult
+{
+  RigidPose       pose;         ///< of the atlas, about the mean of its points
+  Eigen::VectorXd coefficients; ///< standard deviations: modes of shape, smooth modes, modes of density
+  Eigen::Index    shapeModes{ 0 };
+  Eigen::Index    smoothModes{ 0 };
+  Eigen::Index    densityModes{ 0 };
+  MeshArrays      mesh; ///< in the geometry's space
+
+  /** Posterior covariance: of the six steps of RigidPose::Moved from `pose`, then of the coefficients. */
+  Eigen::MatrixXd      covariance;
+  std::vector<Vector3> pointDeviations; ///< of each point along the geometry's axes, mm
+
+  double              cost{ 0.0 };
+  std::vector<double> costs; ///< of each view
+  bool                converged{ false };
+  RegistrationQuality quality{ RegistrationQuality::Failed };
+  double              distinctness{ 0.0 };
+  double              precision{ 0.0 }; ///< by which the cost counts against the prior
+};
+
+/** \brief Finds the bone that X-rays show: pose, shape and density of an atlas (paper 7).
+ *
+ * The bone is the atlas' mean, moved by a pose and by its modes of shape, by smooth displacements (SmoothModes) of what
+ * a few subjects' modes leave out, and with its modes of density. From `initial`, the pose of the mean is searched for
+ * as RegisterRigid does; then Levenberg-Marquardt steps over all parameters, from coarse to fine images, find the
+ * maximum of the posterior: the prior is a standard normal distribution of all coefficients, the likelihood
+ * exp(-precision * cost) with the cost of PatchGradientCorrelation. The precision is that at which the curvature of the
+ * cost agrees with how much the gradient's shares of separate blocks of the images scatter: it needs no model of the
+ * noise, and counts noise that correlates over a block once.
+ *
+ * Throws std::invalid_argument where a view cannot be used, and where one view alone is given without a prior of the
+ * pose: size and depth could not be told apart. */
+DeformableRegistrationResult
+RegisterDeformable(const StatisticalModelContent &                              atlas,
+                   const std::vector<RadiographView> &                          views,
+                   const RigidPose &                                            initial,
+                   const DeformableRadiographParameters &                       parameters,
+                   const Execution &                                            execution,
+                   const std::function<void(const Eigen::VectorXd &, double)> & observe = {});
+} // namespace bone
+
+#endif

@@ -1,0 +1,43 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDeformableModel_h
+#define boneDeformableModel_h
+
+#include "boneDeformableRadiographParameters.h"
+#include "boneStatisticalModel.h"
+
+namespace bone
+{
+/** \struct DeformableModel
+ * \brief The atlas as registration moves it: a mean, and linear modes of independent standard normal coefficients: the
+ * atlas' of shape, smooth ones, and the atlas' of density. */
+struct DeformableModel
+{
+  DeformableModel(const StatisticalModelContent & atlas, const DeformableRadiographParameters & parameters);
+
+  MeshArrays                        mean;
+  MeshArrays                        meanDensities;       ///< the mean, with one density in each cell
+  std::vector<std::vector<Vector3>> displacements;       ///< of shape, then smooth; mm per standard deviation
+  std::vector<std::vector<double>>  densities;           ///< changes of the coefficients per standard deviation
+  double                            restVariance{ 0.0 }; ///< of a point along an axis, in none of the modes; mm^2
+  Eigen::Index                      shapeModes{ 0 };
+  Eigen::Index                      smoothModes{ 0 };
+  Eigen::Index                      densityModes{ 0 };
+
+  Eigen::Index
+  GetNumberOfCoefficients() const
+  {
+    return shapeModes + smoothModes + densityModes;
+  }
+
+  std::vector<Vector3>
+  MovePoints(const Eigen::VectorXd & coefficients) const;
+
+  /** The mesh of the coefficients: shape, smooth, density. */
+  MeshArrays
+  Synthesize(const Eigen::VectorXd & coefficients) const;
+};
+} // namespace bone
+
+#endif

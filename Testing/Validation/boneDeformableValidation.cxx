@@ -1,0 +1,286 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+// boneDeformableValidation REGISTERED CTS SHAPES: leave-one-out over subjects NAME: trains an atlas of the others'
+// REGISTERED/NAME.vtu, simulates X-rays of CTS/NAME.mha, and finds shape and density from starts that are off. Prints a
+// JSON line a subject: distances to the surface SHAPES/NAME.ply (mm) of the mean, of the best projection on the
+// atlas' modes, and of what was found; how many of the 95 % intervals hold the truth; seconds.
+#include "boneXRaySimulation.h"
+
+#include "boneDeformableRegistration.h"
+#include "boneMeshIO.h"
+#include "bonePointAlignment.h"
+#include "boneStatisticalModelEstimator.h"
+#include "boneTriangleTree.h"
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <itkConstantPadImageFilter.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+
+namespace
+{
+using namespace bone;
+using Mesh = DensityMesh<double>;
+namespace fs = std::filesystem;
+
+struct Trials
+{
+  std::string                    registered;
+  std::string                    cts;
+  std::string                    shapes;
+  std::vector<std::string>       only;
+  std::vector<double>            angles{ 0, 90 };
+  int                            pixels{ 256 };
+  double                         translation{ 10 };
+  double                         rotation{ 10 };
+  std::uint64_t                  seed{ 1 };
+  bool                           trace{ false };
+  XRaySimulation                 simulation;
+  DeformableRadiographParameters parameters;
+};
+
+StatisticalModelContent
+Train(const std::vector<std::pair<std::string, MeshArrays>> & subjects, const std::string & without)
+{
+  auto set = MeshTrainingSet<>::New();
+  for (const auto & [name, arrays] : subjects)
+  {
+    if (name != without)
+    {
+      auto mesh = Mesh::New();
+      mesh->SetArrays(arrays);
+      set->AddSubject(name, mesh);
+    }
+  }
+  auto estimator = StatisticalModelEstimator<>::New();
+  estimator->SetInput(set);
+  estimator->SetVarianceProportion(1.0);
+  estimator->SetOutlierThreshold(0.0);
+  estimator->Update();
+  return estimator->GetOutput()->GetContent();
+}
+
+/** With soft tissue about it, as far as its air is dark. */
+CTImage::Pointer
+Embed(const CTImage * ct, double softTissue)
+{
+  auto              pad = itk::ConstantPadImageFilter<CTImage, CTImage>::New();
+  CTImage::SizeType border;
+  for (unsigned int k = 0; k < 3; ++k)
+  {
+    border[k] = static_cast<itk::SizeValueType>(40.0 / ct->GetSpacing()[k]);
+  }
+  pad->SetInput(ct);
+  pad->SetPadBound(border);
+  pad->SetConstant(static_cast<float>(softTissue));
+  pad->Update();
+  return pad->GetOutput();
+}
+
+struct Distances
+{
+  double mean{ 0.0 };
+  double most{ 0.0 }; ///< 95 %
+};
+
+/** Of both surfaces' vertices to the other surface. */
+Distances
+Compare(const MeshArrays & mesh, const TriangleSurface & truth)
+{
+  std::vector<TriangleTree::Triangle> ofMesh, ofTruth;
+  std::vector<bool>                   outside(mesh.points.size(), false);
+  for (const auto & face : BoundaryFaces(mesh))
+  {
+    ofMesh.push_back({ mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] });
+    for (const IdType p : face)
+    {
+      outside[static_cast<std::size_t>(p)] = true;
+    }
+  }
+  for (const auto & t : truth.triangles)
+  {
+    ofTruth.push_back({ truth.points[t[0]], truth.points[t[1]], truth.points[t[2]] });
+  }
+  const TriangleTree  meshTree(ofMesh), truthTree(ofTruth);
+  std::vector<double> all;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+  {
+    if (outside[p])
+    {
+      all.push_back(std::sqrt(truthTree.FindNearest(mesh.points[p]).squaredDistance));
+    }
+  }
+  for (std::size_t i = 0; i < truth.points.size(); i += 4)
+  {
+    all.push_back(std::sqrt(meshTree.FindNearest(truth.points[i]).squaredDistance));
+  }
+  std::sort(all.begin(), all.end());
+  Distances result;
+  for (const double d : all)
+  {
+    result.mean += d / static_cast<double>(all.size());
+  }
+  result.most = all[all.size() * 95 / 100];
+  return result;
+}
+
+RigidPose
+Disturb(const RigidPose & pose, const Trials & trials, std::mt19937_64 & random)
+{
+  std::uniform_real_distribution<double> shift(-trials.translation, trials.translation);
+  std::uniform_real_distribution<double> turn(-trials.rotation, trials.rotation);
+  Eigen::Matrix<double, 6, 1>            step;
+  for (int k = 0; k < 3; ++k)
+  {
+    step[k] = shift(random);
+    step[3 + k] = turn(random) * std::acos(-1.0) / 180.0;
+  }
+  return pose.Moved(step);
+}
+
+void
+Run(const Trials & trials)
+{
+  std::vector<std::pair<std::string, MeshArrays>> subjects;
+  for (const auto & entry : fs::directory_iterator(trials.registered))
+  {
+    subjects.emplace_back(entry.path().stem().string(), ReadMeshArrays(entry.path().string()));
+  }
+  std::sort(subjects.begin(), subjects.end(), [](const auto & a, const auto & b) { return a.first < b.first; });
+  for (const auto & [name, truth] : subjects)
+  {
+    if (!trials.only.empty() && std::find(trials.only.begin(), trials.only.end(), name) == trials.only.end())
+    {
+      continue;
+    }
+    std::mt19937_64 random(trials.seed);
+    const auto      atlas = Train(subjects, name);
+    const auto      surface = ReadTriangleSurface(trials.shapes + "/" + name + ".ply");
+    const auto      ct = Embed(ReadCT(trials.cts + "/" + name + ".mha"), 40.0);
+    const AffineMap fit = FitAlignment(atlas.mean.points, truth.points, AlignmentKind::Rigid);
+    Vector3         centre = Vector3::Zero();
+    for (const Vector3 & x : atlas.mean.points)
+    {
+      centre += x / static_cast<double>(atlas.mean.points.size());
+    }
+    const RigidPose right{ fit.linear, fit(centre) - centre, centre };
+
+    nlohmann::json row{ { "subject", name } };
+    const auto     put = [&row](const std::string & what, const Distances & d) {
+      row[what] = d.mean;
+      row[what + "95"] = d.most;
+    };
+    MeshArrays mesh = atlas.mean;
+    for (Vector3 & x : mesh.points)
+    {
+      x = right.Apply(x);
+    }
+    put("meanShape", Compare(mesh, surface));
+    std::vector<Vector3> inAtlas;
+    const AffineMap      back = AlignToMean(truth.points, atlas.mean.points, AlignmentKind::Rigid);
+    for (const Vector3 & x : truth.points)
+    {
+      inAtlas.push_back(back(x));
+    }
+    mesh.points = UnstackPoints(atlas.shape.Synthesize(atlas.shape.Project(StackPoints(inAtlas))));
+    for (Vector3 & x : mesh.points)
+    {
+      x = back.Inverse()(x);
+    }
+    put("projection", Compare(mesh, surface));
+
+    std::vector<RadiographView> views;
+    for (const double angle : trials.angles)
+    {
+      views.push_back(Simulate(ct,
+                               MakeView(truth.points, Vector3::UnitY(), Vector3::UnitX(), angle, trials.pixels),
+                               trials.simulation,
+                               random));
+    }
+    const RigidPose start = Disturb(right, trials, random);
+    const auto      clock = std::chrono::steady_clock::now();
+    const auto      result = RegisterDeformable(
+      atlas, views, start, trials.parameters, Execution(), [&](const Eigen::VectorXd & c, double cost) {
+        if (trials.trace)
+        {
+          std::cerr << cost << " |c|^2 " << c.squaredNorm() << " of " << c.size() << std::endl;
+        }
+      });
+    row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    put("found", Compare(result.mesh, surface));
+    double inside = 0.0, squares = 0.0, deviations = 0.0, points = 0.0;
+    for (std::size_t p = 0; p < truth.points.size(); ++p)
+    {
+      const Vector3 d = result.mesh.points[p] - truth.points[p];
+      for (int k = 0; k < 3; ++k)
+      {
+        inside += std::abs(d[k]) < 1.96 * result.pointDeviations[p][k] ? 1.0 : 0.0;
+        squares += d[k] * d[k];
+        deviations += result.pointDeviations[p][k] * result.pointDeviations[p][k];
+        points += 1.0;
+      }
+    }
+    row["shape1"] = { result.coefficients[0], atlas.shape.Project(StackPoints(inAtlas))[0] };
+    row["coverage"] = inside / points;
+    row["pointError"] = std::sqrt(squares / points);
+    row["statedError"] = std::sqrt(deviations / points);
+    row["cost"] = result.cost;
+    row["precision"] = result.precision;
+    row["converged"] = result.converged;
+    std::cout << row << std::endl;
+  }
+}
+} // namespace
+
+int
+main(int argc, char * argv[])
+{
+  Trials   trials;
+  CLI::App app("Shape and density from simulated X-rays, leave-one-out");
+  auto &   p = trials.parameters;
+  app.add_option("registered", trials.registered)->required();
+  app.add_option("cts", trials.cts)->required();
+  app.add_option("shapes", trials.shapes)->required();
+  app.add_option("--only", trials.only, "Subjects");
+  app.add_option("--angles", trials.angles, "Of the views about the bone's axis, degrees");
+  app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
+  app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");
+  app.add_option("--rotation", trials.rotation, "and so many degrees about each");
+  app.add_option("--seed", trials.seed);
+  app.add_flag("--trace", trials.trace);
+  app.add_option("--scatter", trials.simulation.scatterToPrimary, "Scatter-to-primary ratio");
+  app.add_option("--photons", trials.simulation.photons, "Of the open beam, a pixel");
+  app.add_option("--smooth-modes", p.smoothModes);
+  app.add_option("--smooth-deviation", p.smoothDeviation);
+  app.add_option("--smooth-length", p.smoothLength);
+  app.add_option("--density-modes", p.densityModes);
+  app.add_option("--search-modes", p.searchModes);
+  app.add_option("--population", p.population);
+  app.add_option("--patch", p.patch);
+  app.add_option("--sigma", p.sigma);
+  app.add_option("--iterations", p.iterations);
+  app.add_option("--search-pixels", p.searchPixels);
+  app.add_option("--target-pixels", p.pixels);
+  app.add_option("--prior-translation", p.translationDeviation);
+  app.add_option("--prior-rotation", p.rotationDeviation);
+  CLI11_PARSE(app, argc, argv);
+  p.searchTranslation = trials.translation;
+  p.searchRotation = trials.rotation;
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(2);
+  try
+  {
+    Run(trials);
+  }
+  catch (const std::exception & error)
+  {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
