@@ -11,6 +11,11 @@
 
 #include <H5Cpp.h>
 
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
 namespace bone
 {
 namespace
@@ -406,6 +411,30 @@ GetModel(const H5::H5File & file)
   return content;
 }
 
+/** HDF5 reads the names of a group into memory without a look at whether there is that much: throws where a local heap
+ * (signature "HEAP", version 0; HDF5 file format specification, III.D) lies beyond the file. */
+void
+RequireHeapsInFile(const std::string & path)
+{
+  constexpr std::size_t header = 32;
+  const std::string     bytes = [&path] {
+    std::ifstream stream(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  }();
+  const std::string signature("HEAP\0\0\0\0", 8);
+  for (std::size_t at = bytes.find(signature); at != std::string::npos && at + header <= bytes.size();
+       at = bytes.find(signature, at + 1))
+  {
+    std::uint64_t size = 0, address = 0;
+    std::memcpy(&size, &bytes[at + 8], sizeof(size));
+    std::memcpy(&address, &bytes[at + 24], sizeof(address));
+    if (size > bytes.size() || address > bytes.size() - size)
+    {
+      Refuse("is no statistical model of BoneTK, or cut short or damaged");
+    }
+  }
+}
+
 /** Runs action() and turns HDF5's exceptions into IOError. */
 template <typename TAction>
 auto
@@ -446,6 +475,7 @@ ReadStatisticalModel(const std::string & path)
   RequireReadableFile(path);
   RequireExtension(path, { ".h5" });
   return NamingHdf5File(path, "is no statistical model of BoneTK, or cut short or damaged", [&] {
+    RequireHeapsInFile(path);
     auto model = StatisticalModel::New();
     model->SetContent(GetModel(H5::H5File(path, H5F_ACC_RDONLY)));
     return model;

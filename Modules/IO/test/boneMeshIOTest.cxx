@@ -393,6 +393,8 @@ TEST_F(SurfaceIOTest, RefusesOpenAndBrokenSurfaces)
   EXPECT_THAT(error("s.ply", "This is a text."), HasSubstr("s.ply: "));
   EXPECT_THAT(error("s.stl", "This is a text."), HasSubstr("s.stl: "));
   EXPECT_THAT(error("s.vtp", "This is a text."), HasSubstr("is no readable VTK poly data"));
+  EXPECT_THAT(error("s.stl", std::string(80, ' ') + std::string("\x01\x00\x00\x48", 4) + std::string(50, '\0')),
+              HasSubstr("says that it has 1207959553 triangles"));
   EXPECT_THAT(error("s.obj", "v 0 0 0"), HasSubstr("must end in .ply or .vtp or .stl"));
   EXPECT_THAT(ErrorOf([&] { ReadTriangleSurface(Path("no.ply")); }), HasSubstr("there is no such file"));
 }

@@ -169,6 +169,17 @@ TEST_F(ModelIO, RefusesSizesThatTheFileCannotHold)
   }
 }
 
+TEST_F(ModelIO, RefusesNamesBeyondTheFile)
+{
+  const std::string path = WriteModel(Path("atlas.h5"));
+  std::string       bytes = ReadText("atlas.h5");
+  const std::size_t heap = bytes.find(std::string("HEAP\0\0\0\0", 8));
+  ASSERT_NE(heap, std::string::npos);
+  bytes[heap + 15] = '\x40'; // the highest byte of the size of its data
+  WriteText("atlas.h5", bytes);
+  EXPECT_THAT(ErrorOf([&] { ReadStatisticalModel(path); }), testing::HasSubstr("damaged"));
+}
+
 TEST_F(ModelIO, RefusesIdsOutOfRange)
 {
   const std::string path = WriteModel(Path("atlas.h5"));

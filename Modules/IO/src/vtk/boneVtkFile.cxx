@@ -21,7 +21,10 @@
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -300,9 +303,36 @@ ReadVtpFile(const std::string & path)
   return ReadXmlWith<vtkXMLPolyDataReader>(path, "VTK poly data (.vtp)");
 }
 
+namespace
+{
+/** VTK takes the memory for as many triangles as a binary STL file says that it has. */
+void
+RequireTrianglesInFile(const std::string & path)
+{
+  constexpr std::size_t header = 80;
+  constexpr double      triangle = 50.0;
+  std::ifstream         stream(path, std::ios::binary);
+  std::array<char, 512> start{};
+  stream.read(start.data(), start.size());
+  const auto end = start.begin() + stream.gcount();
+  const bool text =
+    std::string(start.data(), 5) == "solid" && std::all_of(start.begin(), end, [](char c) { return c > 0; });
+  std::uint32_t count = 0;
+  std::memcpy(&count, &start[header], sizeof(count));
+  const auto size = static_cast<double>(std::filesystem::file_size(path));
+  if (!text && size > header && header + sizeof(count) + triangle * count > size)
+  {
+    Refuse(
+      "is an STL file that is damaged or cut short: it says that it has ", count, " triangles, but is not that long");
+  }
+}
+} // namespace
+
 vtkSmartPointer<vtkPolyData>
 ReadStlFile(const std::string & path)
 {
+  RequireReadableFile(path);
+  NamingFile(path, [&path] { RequireTrianglesInFile(path); });
   return ReadSurfaceWith<vtkSTLReader>(path, "STL");
 }
 
