@@ -130,7 +130,7 @@ RunProgram(const std::vector<std::string> & command, const std::string & folder,
     {
       std::ofstream(log, std::ios::app) << ReadBytes(entry.path().string());
       fs::remove(entry.path());
-      end.wrong = end.wrong.empty() ? "a sanitizer's report" : end.wrong;
+      end.wrong = end.wrong.empty() && HasReport(log) ? "a sanitizer's report" : end.wrong;
     }
   }
   return end;

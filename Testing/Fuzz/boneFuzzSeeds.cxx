@@ -320,6 +320,10 @@ WriteTexts(const std::string & folder)
             R"({"references": [{"name": "water", "density": 0, "value": 0},
                 {"name": "core", "density": 150, "label": 1},
                 {"name": "rod", "density": 800, "from": [17, 17, 4], "to": [17, 17, 8], "radius": 2}]})");
+  WriteText(folder + "/corner.ply",
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n"
+            "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
   WriteText(folder + "/rtk.json", R"({"rtk": "geometry.xml", "size": [20, 20], "spacing": [2, 2]})");
 }
 /** What registration begins with: a pose, landmarks, and where they lie on the view. */

@@ -15,6 +15,9 @@ namespace
 {
 using nlohmann::json;
 
+/** Ten times the largest detectors and films; an image of them takes half a gigabyte. */
+constexpr double MostPixels = 1.3e8;
+
 std::array<int, 2>
 SizeMember(const json & object, const char * name)
 {
@@ -27,6 +30,10 @@ SizeMember(const json & object, const char * name)
       Refuse("'", name, "' must be two positive whole numbers, columns and rows");
     }
     size[k] = static_cast<int>(numbers[k]);
+  }
+  if (numbers[0] * numbers[1] > MostPixels)
+  {
+    Refuse("'", name, "' asks for ", numbers[0] * numbers[1], " pixels; a detector has at most ", MostPixels);
   }
   return size;
 }

@@ -411,26 +411,38 @@ GetModel(const H5::H5File & file)
   return content;
 }
 
-/** HDF5 reads the names of a group into memory without a look at whether there is that much: throws where a local heap
- * (signature "HEAP", version 0; HDF5 file format specification, III.D) lies beyond the file. */
+/** HDF5 crashes in some files of which bytes are missing or doubled, and reads the names of a group into memory without
+ * a look at whether there is that much. Throws where the file is not as long as its superblock says (version 0 or 1,
+ * which are written; HDF5 file format specification, II.A), or a local heap (III.D) lies beyond it. */
 void
-RequireHeapsInFile(const std::string & path)
+RequireWholeHdf5File(const std::string & path)
 {
   constexpr std::size_t header = 32;
   const std::string     bytes = [&path] {
     std::ifstream stream(path, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   }();
+  const auto damaged = [] { Refuse("is no statistical model of BoneTK, or cut short or damaged"); };
+  const auto number = [&bytes](std::size_t at) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, &bytes[at], sizeof(value));
+    return value;
+  };
+  constexpr std::size_t superblock = 96;
+  const bool            first = bytes.size() > superblock && bytes.compare(1, 3, "HDF") == 0 && bytes[8] <= 1;
+  const std::size_t     sizes = first && bytes[8] == 1 ? 28 : 24; // version 1 has four bytes more
+  if (first && number(sizes) == 0 && number(sizes + 16) != bytes.size())
+  {
+    damaged();
+  }
   const std::string signature("HEAP\0\0\0\0", 8);
   for (std::size_t at = bytes.find(signature); at != std::string::npos && at + header <= bytes.size();
        at = bytes.find(signature, at + 1))
   {
-    std::uint64_t size = 0, address = 0;
-    std::memcpy(&size, &bytes[at + 8], sizeof(size));
-    std::memcpy(&address, &bytes[at + 24], sizeof(address));
-    if (size > bytes.size() || address > bytes.size() - size)
+    const std::uint64_t size = number(at + 8);
+    if (size > bytes.size() || number(at + 24) > bytes.size() - size)
     {
-      Refuse("is no statistical model of BoneTK, or cut short or damaged");
+      damaged();
     }
   }
 }
@@ -475,7 +487,7 @@ ReadStatisticalModel(const std::string & path)
   RequireReadableFile(path);
   RequireExtension(path, { ".h5" });
   return NamingHdf5File(path, "is no statistical model of BoneTK, or cut short or damaged", [&] {
-    RequireHeapsInFile(path);
+    RequireWholeHdf5File(path);
     auto model = StatisticalModel::New();
     model->SetContent(GetModel(H5::H5File(path, H5F_ACC_RDONLY)));
     return model;

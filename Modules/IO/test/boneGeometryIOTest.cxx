@@ -60,6 +60,14 @@ protected:
                                 "detectorV": [0, 0, -1], "size": [3, 4], "spacing": [1, 2])";
 };
 
+TEST_F(GeometryIOTest, RefusesMorePixelsThanADetectorHas)
+{
+  std::string view = m_Good;
+  view.replace(view.find("[3, 4]"), 6, "[200000, 100000]");
+  WriteText("g.json", "{" + view + "}");
+  EXPECT_THAT(ErrorOf([&] { ReadGeometry(Path("g.json")); }), testing::HasSubstr("asks for 2e+10 pixels"));
+}
+
 TEST_F(GeometryIOTest, ViewsAreReadAsWritten)
 {
   for (const auto & views : { std::vector<XRayGeometry::Pointer>{ MakeView(false, 0.3) },

@@ -180,6 +180,13 @@ TEST_F(ModelIO, RefusesNamesBeyondTheFile)
   EXPECT_THAT(ErrorOf([&] { ReadStatisticalModel(path); }), testing::HasSubstr("damaged"));
 }
 
+TEST_F(ModelIO, RefusesAFileOfAnotherLengthThanItSays)
+{
+  const std::string path = WriteModel(Path("atlas.h5"));
+  WriteText("atlas.h5", ReadText("atlas.h5") + "more");
+  EXPECT_THAT(ErrorOf([&] { ReadStatisticalModel(path); }), testing::HasSubstr("damaged"));
+}
+
 TEST_F(ModelIO, RefusesIdsOutOfRange)
 {
   const std::string path = WriteModel(Path("atlas.h5"));
