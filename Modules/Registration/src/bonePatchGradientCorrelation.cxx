@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "bonePatchGradientCorrelation.h"
 
-#include "boneImageGradient.h"
+#include "boneMetricPixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,6 @@ namespace bone
 {
 namespace
 {
-/** Derivatives of one image along columns and rows. */
-using Components = std::array<std::vector<float>, 2>;
-
 /** Weighted sums over the pixels of blocks or patches, #n of them; channel 0 is the X-ray, 1 the radiograph, the rest
  * are its derivatives by the parameters. */
 struct PatchSums
@@ -87,17 +84,16 @@ AddRow(const float * channel,
 
 struct PatchGradientCorrelation::Data
 {
-  ImageGradient       gradient;
+  CountedGradient     gradient;
   std::array<int, 2>  size;
   int                 block; ///< half a patch, pixels
   std::array<int, 2>  blocks{};
-  std::vector<float>  weights;      ///< of pixels
-  Components          fixed;        ///< of the X-ray, less what is nothing
-  Components          weighted;     ///< times the weights
+  GradientComponents  fixed;        ///< of the X-ray, less what is nothing
+  GradientComponents  weighted;     ///< times the weights
   std::vector<double> inverseNorms; ///< 1 / |f| of each patch; 0 where the X-ray shows nothing
 
   Data(const RadiographView & target, int patch, double sigma)
-    : gradient(target.view.size[0], target.view.size[1], sigma)
+    : gradient(target, sigma)
     , size(target.view.size)
     , block(std::max(2, patch / 2))
   {
@@ -126,19 +122,18 @@ struct PatchGradientCorrelation::Data
     return (row + j) * blocks[0] + column + i;
   }
 
-  Components
-  Gradient(const float * image) const
+  const std::vector<float> &
+  Weights() const
   {
-    Components result{ std::vector<float>(this->Pixels()), std::vector<float>(this->Pixels()) };
-    gradient.Apply(image, result[0].data(), result[1].data());
-    return result;
+    return gradient.GetWeights();
   }
 
   /** Of all channels but the first, which is the X-ray. */
   PatchSums
-  Sum(const std::vector<Components> & channels) const
+  Sum(const std::vector<GradientComponents> & channels) const
   {
     const auto         count = static_cast<Eigen::Index>(channels.size()) + 1;
+    const auto &       weights = this->Weights();
     PatchSums          ofBlocks(count, static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
     std::vector<float> model(static_cast<std::size_t>(size[0]));
     for (int r = 0; r < size[1]; ++r)
@@ -194,8 +189,9 @@ struct PatchGradientCorrelation::Data
 
   /** The sum over pixels of a_p w (derivative i) (derivative j), where `ofPatches` are the a_p of the patches. */
   Eigen::MatrixXd
-  Gram(const std::vector<Components> & channels, const Eigen::VectorXd & ofPatches) const
+  Gram(const std::vector<GradientComponents> & channels, const Eigen::VectorXd & ofPatches) const
   {
+    const auto &    weights = this->Weights();
     const auto      m = static_cast<Eigen::Index>(channels.size()) - 1;
     Eigen::VectorXd ofBlocks = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
     for (Eigen::Index p = 0; p < ofPatches.size(); ++p)
@@ -205,35 +201,31 @@ struct PatchGradientCorrelation::Data
         ofBlocks[this->BlockOf(p, i % 2, i / 2)] += ofPatches[p];
       }
     }
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
-    Eigen::MatrixXf part(m, 2 * size[0]);
+    GramSum            sum(m);
+    Eigen::MatrixXf    part(size[0], m);
+    std::vector<float> roots(static_cast<std::size_t>(size[0]));
     for (int r = 0; r < size[1]; ++r)
     {
-      Eigen::Index used = 0;
+      const std::size_t start = static_cast<std::size_t>(r) * size[0];
       for (int c = 0; c < size[0]; ++c)
       {
-        const std::size_t at = static_cast<std::size_t>(r) * size[0] + c;
-        const double      a = weights[at] * ofBlocks[static_cast<Eigen::Index>(r / block) * blocks[0] + c / block];
-        if (a > 0.0)
+        const double a = weights[start + c] * ofBlocks[static_cast<Eigen::Index>(r / block) * blocks[0] + c / block];
+        roots[c] = static_cast<float>(std::sqrt(std::max(0.0, a)));
+      }
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        for (Eigen::Index k = 0; k < m; ++k)
         {
-          const auto root = static_cast<float>(std::sqrt(a));
-          for (int axis = 0; axis < 2; ++axis, ++used)
+          const float * channel = &channels[static_cast<std::size_t>(k) + 1][axis][start];
+          for (int c = 0; c < size[0]; ++c)
           {
-            for (Eigen::Index k = 0; k < m; ++k)
-            {
-              part(k, used) = root * channels[static_cast<std::size_t>(k) + 1][axis][at];
-            }
+            part(c, k) = roots[c] * channel[c];
           }
         }
-      }
-      if (used > 0)
-      {
-        Eigen::MatrixXf product = Eigen::MatrixXf::Zero(m, m);
-        product.selfadjointView<Eigen::Lower>().rankUpdate(part.leftCols(used));
-        gram += product.cast<double>();
+        sum.Add(part, size[0]);
       }
     }
-    return gram.selfadjointView<Eigen::Lower>();
+    return sum.Get();
   }
 };
 
@@ -242,33 +234,13 @@ PatchGradientCorrelation::~PatchGradientCorrelation() = default;
 PatchGradientCorrelation::PatchGradientCorrelation(const RadiographView & target, int patch, double sigma)
 {
   auto data = std::make_unique<Data>(target, patch, sigma);
-  data->fixed = data->Gradient(target.values.data());
-  data->weights.assign(data->Pixels(), 0.0f);
-  const int radius = data->gradient.Radius();
-  for (int r = radius; r < data->size[1] - radius; ++r)
-  {
-    for (int c = radius; c < data->size[0] - radius; ++c)
-    {
-      float least = 1.0f;
-      for (int y = r - radius; y <= r + radius && !target.weights.empty(); ++y)
-      {
-        const float * row = &target.weights[static_cast<std::size_t>(y) * data->size[0]];
-        least = std::min(least, *std::min_element(row + c - radius, row + c + radius + 1));
-      }
-      data->weights[static_cast<std::size_t>(r) * data->size[0] + c] = least;
-    }
-  }
-  if (std::none_of(data->weights.begin(), data->weights.end(), [](float w) { return w > 0.0f; }))
-  {
-    throw std::invalid_argument("no pixel of the X-ray counts: the mask leaves nothing, or the image has less than " +
-                                std::to_string(2 * radius + 1) + " columns or rows");
-  }
+  data->fixed = data->gradient.Apply(target.values.data());
   for (int axis = 0; axis < 2; ++axis)
   {
     data->weighted[axis].resize(data->Pixels());
     std::transform(data->fixed[axis].begin(),
                    data->fixed[axis].end(),
-                   data->weights.begin(),
+                   data->Weights().begin(),
                    data->weighted[axis].begin(),
                    [](float f, float w) { return w * f; });
   }
@@ -289,7 +261,7 @@ PatchGradientCorrelation::PatchGradientCorrelation(const RadiographView & target
 double
 PatchGradientCorrelation::Evaluate(const float * image) const
 {
-  const PatchSums sums = m_Data->Sum({ m_Data->Gradient(image) });
+  const PatchSums sums = m_Data->Sum({ m_Data->gradient.Apply(image) });
   double          shared = 0.0;
   double          norms = 0.0;
   for (Eigen::Index p = 0; p < m_Data->Patches(); ++p)
@@ -303,10 +275,10 @@ PatchGradientCorrelation::Evaluate(const float * image) const
 MetricValue
 PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & images) const
 {
-  std::vector<Components> channels;
+  std::vector<GradientComponents> channels;
   for (const float * image : images)
   {
-    channels.push_back(m_Data->Gradient(image));
+    channels.push_back(m_Data->gradient.Apply(image));
   }
   const auto      m = static_cast<Eigen::Index>(images.size()) - 1;
   const PatchSums sums = m_Data->Sum(channels);
@@ -379,7 +351,7 @@ PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & image
 std::vector<float>
 PatchGradientCorrelation::Correlations(const float * image) const
 {
-  const PatchSums     sums = m_Data->Sum({ m_Data->Gradient(image) });
+  const PatchSums     sums = m_Data->Sum({ m_Data->gradient.Apply(image) });
   std::vector<float>  map(m_Data->Pixels(), 0.0f);
   const double        least = 1e-12 * std::max(0.0, sums.withModel.row(1).maxCoeff());
   std::vector<double> ofBlocks(static_cast<std::size_t>(m_Data->blocks[0]) * m_Data->blocks[1], 0.0);

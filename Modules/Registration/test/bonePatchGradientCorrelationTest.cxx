@@ -4,11 +4,12 @@
 #include "bonePatchGradientCorrelation.h"
 
 #include "boneImageGradient.h"
+#include "boneMetricTestImages.h"
 #include "boneSymmetricEigen.h"
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <limits>
 
 namespace
 {
@@ -18,23 +19,10 @@ constexpr int Columns = 40;
 constexpr int Rows = 30;
 constexpr int Patch = 8;
 
-/** A smooth image of random waves. */
 std::vector<float>
 Waves(unsigned int seed)
 {
-  std::mt19937                           random(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<float>                     image(Columns * Rows, 0.0f);
-  for (int wave = 0; wave < 12; ++wave)
-  {
-    const double a = uniform(random), b = uniform(random), phase = 3.0 * uniform(random), height = uniform(random);
-    for (int i = 0; i < Columns * Rows; ++i)
-    {
-      const double phaseAt = 0.6 * a * (i % Columns) + 0.6 * b * (i / Columns) + phase;
-      image[static_cast<std::size_t>(i)] += static_cast<float>(100.0 * height * std::sin(phaseAt));
-    }
-  }
-  return image;
+  return RandomWaves(Columns, Rows, seed, 100.0);
 }
 
 RadiographView
@@ -131,26 +119,12 @@ TEST(PatchGradientCorrelation, GradientAgreesWithDifferences)
   const PatchGradientCorrelation  metric(Target(1), Patch, 1.0);
   const auto                      image = Waves(2);
   std::vector<std::vector<float>> images{ image, Waves(3), Waves(4), Waves(1) };
-  std::vector<float *>            pointers;
-  for (auto & x : images)
-  {
-    pointers.push_back(x.data());
-  }
-  const MetricValue value = metric.EvaluateDerivatives(pointers);
+  const MetricValue               value = metric.EvaluateDerivatives(PointersTo(images));
   EXPECT_DOUBLE_EQ(value.cost, metric.Evaluate(image.data()));
   for (int k = 0; k < 3; ++k)
   {
-    double costs[2];
-    for (int side = 0; side < 2; ++side)
-    {
-      auto moved = image;
-      for (std::size_t i = 0; i < moved.size(); ++i)
-      {
-        moved[i] += (side == 0 ? -0.01f : 0.01f) * images[static_cast<std::size_t>(k) + 1][i];
-      }
-      costs[side] = metric.Evaluate(moved.data());
-    }
-    EXPECT_NEAR(value.gradient[k], (costs[1] - costs[0]) / 0.02, 1e-3 * std::abs(value.gradient[k]) + 1e-4);
+    const double difference = CentralDifference(metric, image, images[static_cast<std::size_t>(k) + 1], 0.01);
+    EXPECT_NEAR(value.gradient[k], difference, 1e-3 * std::abs(value.gradient[k]) + 1e-4);
   }
   EXPECT_LT((value.shares.rowwise().sum() - value.gradient).norm(), 1e-10);
   EXPECT_GT(EigenOf<Eigen::Dynamic>(value.hessian).values[0], 0.0);
@@ -183,6 +157,9 @@ TEST(PatchGradientCorrelation, PixelsWithoutWeightDoNotCount)
       image[static_cast<std::size_t>(r * Columns + c)] = 1e4f;
     }
   }
+  EXPECT_NEAR(PatchGradientCorrelation(target, Patch, 1.0).Evaluate(image.data()), 0.0, 1e-4);
+  target.values[11 * Columns + 7] = std::numeric_limits<float>::quiet_NaN();
+  image[12 * Columns + 8] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_NEAR(PatchGradientCorrelation(target, Patch, 1.0).Evaluate(image.data()), 0.0, 1e-4);
 }
 
