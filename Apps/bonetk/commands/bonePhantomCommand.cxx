@@ -35,7 +35,8 @@ MakeModel(const PhantomOptions & options)
   }
   const TriangleSurface                   surface = ReadTriangleSurface(options.surface);
   std::vector<TriangleDistance::Triangle> triangles(surface.triangles.begin(), surface.triangles.end());
-  return std::make_shared<const SurfacePhantom>(surface.points, triangles);
+  return std::make_shared<const SurfacePhantom>(
+    surface.points, triangles, SurfacePhantomParameters::ForSubject(options.subject));
 }
 
 void

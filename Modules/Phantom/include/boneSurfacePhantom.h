@@ -7,6 +7,8 @@
 #include "bonePhantomModel.h"
 #include "boneTriangleDistance.h"
 
+#include <cstdint>
+
 namespace bone
 {
 /** Depths (mm), places along the bone (fractions of its length) and densities (HU) of a \ref SurfacePhantom; the
@@ -29,6 +31,11 @@ struct SurfacePhantomParameters
   double trabecularEndDensity{ 200.0 }; ///< additional, at the ends
   double trabecularRimDensity{ 120.0 }; ///< additional, just under the periosteum
   double marrowDensity{ -50.0 };        ///<
+
+  /** The subject of a seed: independent draws of cortical depths and densities within ranges, nearer to the mean more
+   * often. Seed 0 is the mean. The same everywhere. */
+  static SurfacePhantomParameters
+  ForSubject(std::uint64_t seed);
 };
 
 /** \class SurfacePhantom

@@ -23,6 +23,21 @@ constexpr double CavityBlend = 10.0;
 constexpr double RimWidth = 4.0;
 } // namespace
 
+SurfacePhantomParameters
+SurfacePhantomParameters::ForSubject(std::uint64_t seed)
+{
+  SubjectDraws             draws(seed);
+  SurfacePhantomParameters p;
+  const auto               vary = [&draws](double & value, double range) { value += range * draws.Next(); };
+  vary(p.shaftCortex, 0.9);
+  vary(p.endCortex, 0.25);
+  vary(p.shaftDensity, 90.0);
+  vary(p.endDensity, 90.0);
+  vary(p.trabecularDensity, 50.0);
+  vary(p.trabecularEndDensity, 70.0);
+  return p;
+}
+
 SurfacePhantom::SurfacePhantom(const std::vector<Vector3> &                    points,
                                const std::vector<TriangleDistance::Triangle> & triangles,
                                const SurfacePhantomParameters &                parameters)

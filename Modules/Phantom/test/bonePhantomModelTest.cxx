@@ -6,6 +6,7 @@
 #include "boneFemurPhantom.h"
 #include "boneHemipelvisPhantom.h"
 #include "boneMakePhantom.h"
+#include "boneSurfacePhantom.h"
 
 #include <itkMacro.h>
 
@@ -204,6 +205,11 @@ TEST(PhantomModel, SubjectsDifferAndRepeat)
     EXPECT_LT(difference, 25.0);
   }
   EXPECT_EQ(FemurParameters::ForSubject(0).headRadius, FemurParameters().headRadius);
+  const auto surface = SurfacePhantomParameters::ForSubject(4);
+  EXPECT_EQ(SurfacePhantomParameters::ForSubject(0).shaftCortex, SurfacePhantomParameters().shaftCortex);
+  EXPECT_NE(surface.shaftCortex, SurfacePhantomParameters().shaftCortex);
+  EXPECT_NE(surface.trabecularDensity, SurfacePhantomParameters().trabecularDensity);
+  EXPECT_EQ(surface.endDensity, SurfacePhantomParameters::ForSubject(4).endDensity);
 }
 
 TEST(PhantomModel, DensitiesLieInTheirRanges)

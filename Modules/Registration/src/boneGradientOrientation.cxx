@@ -32,6 +32,8 @@ CheckedSigma(double sigma)
   return sigma;
 }
 
+} // namespace
+
 /** An image's gradients and what becomes of them. */
 struct Orientation
 {
@@ -40,7 +42,6 @@ struct Orientation
   double              meanSquare; ///< weighted mean of |g|^2; 0 for a constant image
   double              norm;       ///< square root of the sum of w |u|^2
 };
-} // namespace
 
 struct GradientOrientation::Data
 {
