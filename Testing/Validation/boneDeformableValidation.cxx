@@ -7,6 +7,7 @@
 // atlas' modes, and of what was found; how many of the 95 % intervals hold the truth; seconds.
 #include "boneXRaySimulation.h"
 
+#include "boneBernstein.h"
 #include "boneDeformableRegistration.h"
 #include "boneMeshIO.h"
 #include "bonePointAlignment.h"
@@ -22,6 +23,7 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 
 namespace
 {
@@ -227,10 +229,52 @@ Run(const Trials & trials)
       }
     }
     row["shape1"] = { result.coefficients[0], atlas.shape.Project(StackPoints(inAtlas))[0] };
+    row["regions"] = nlohmann::json::array();
+    const auto labels = ReadLabels(trials.cts + "/" + name + "_l.nii.gz");
+    const auto scan = ReadCT(trials.cts + "/" + name + ".mha");
+    for (const RegionDensity & region : result.regions)
+    {
+      double volume = 0.0, mass = 0.0;
+      for (std::size_t i = 0; i < labels->GetBufferedRegion().GetNumberOfPixels(); ++i)
+      {
+        const int label = labels->GetBufferPointer()[i];
+        if (region.region < 0 ? label > 0 : label == region.region)
+        {
+          volume += 1.0;
+          mass += scan->GetBufferPointer()[i];
+        }
+      }
+      row["regions"].push_back({ { "region", region.region },
+                                 { "volume", { region.volume, region.volumeDeviation, volume } },
+                                 { "density", { region.density, region.densityDeviation, mass / volume } },
+                                 { "mass", { region.mass, region.massDeviation, mass } } });
+      // Of regions: what the registered model of the subject has, as regions of voxels have other borders.
+      volume = mass = 0.0;
+      for (std::size_t t = 0; t < truth.tetrahedra.size(); ++t)
+      {
+        if (region.region < 0 || truth.region[t] == region.region)
+        {
+          const auto & ids = truth.tetrahedra[t];
+          const double v =
+            SignedVolume(truth.points[ids[0]], truth.points[ids[1]], truth.points[ids[2]], truth.points[ids[3]]);
+          const auto each = static_cast<std::size_t>(BernsteinCount(truth.maximumDegree));
+          const auto first = truth.coefficients.begin() + static_cast<std::ptrdiff_t>(t * each);
+          const int  number = BernsteinCount(truth.degree[t]);
+          volume += v;
+          mass += v * std::accumulate(first, first + number, 0.0) / number;
+        }
+      }
+      auto & put3 = row["regions"].back();
+      put3["volume"][2] = volume;
+      put3["density"][2] = mass / volume;
+      put3["massOfVoxels"] = put3["mass"][2];
+      put3["mass"][2] = mass;
+    }
     row["coverage"] = inside / points;
     row["pointError"] = std::sqrt(squares / points);
     row["statedError"] = std::sqrt(deviations / points);
     row["cost"] = result.cost;
+    row["intensityPrecision"] = result.intensityPrecision;
     row["precision"] = result.precision;
     row["converged"] = result.converged;
     std::cout << row << std::endl;
@@ -262,6 +306,9 @@ main(int argc, char * argv[])
   app.add_option("--density-modes", p.densityModes);
   app.add_option("--search-modes", p.searchModes);
   app.add_option("--population", p.population);
+  app.add_option("--intensities", p.intensities);
+  app.add_option("--background-length", p.backgroundLength);
+  app.add_option("--gain-deviation", p.gainDeviation);
   app.add_option("--patch", p.patch);
   app.add_option("--sigma", p.sigma);
   app.add_option("--iterations", p.iterations);

@@ -8,6 +8,13 @@
 
 namespace bone
 {
+/** \brief What the modes of a set of subjects leave of a new one, by leave-one-out.
+ *
+ * `scores` (#subjects by #modes, standard deviations) are those of the subjects. Each column of the result is a subject
+ * less its nearest vector in the affine hull of the others, in units of the modes: modes * column is the vector. */
+Eigen::MatrixXd
+LeaveOneOutResiduals(const PrincipalModes & modes, const Eigen::MatrixXd & scores);
+
 /** \brief Smooth displacements with the variance of what an atlas' modes of shape leave of a new subject.
  *
  * The modes are those of SmoothModes (`length`, mm, `modes` at the most). Their variances, alike for each three of one

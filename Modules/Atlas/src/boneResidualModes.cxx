@@ -14,13 +14,6 @@ namespace bone
 {
 namespace
 {
-/** Each subject's shape, #subjects columns, in units of the modes (mm): distances are those of all points together. */
-Eigen::MatrixXd
-ShapesInModes(const StatisticalModelContent & atlas)
-{
-  return (atlas.shapeScores * atlas.shape.variances.cwiseSqrt().asDiagonal()).transpose();
-}
-
 /** The column `subject` less its projection on the affine hull of the others. */
 Eigen::VectorXd
 LeftOut(const Eigen::MatrixXd & shapes, Eigen::Index subject)
@@ -43,6 +36,18 @@ LeftOut(const Eigen::MatrixXd & shapes, Eigen::Index subject)
 }
 } // namespace
 
+Eigen::MatrixXd
+LeaveOneOutResiduals(const PrincipalModes & modes, const Eigen::MatrixXd & scores)
+{
+  const Eigen::MatrixXd vectors = (scores * modes.variances.cwiseSqrt().asDiagonal()).transpose();
+  Eigen::MatrixXd       left(vectors.rows(), vectors.cols());
+  for (Eigen::Index i = 0; i < vectors.cols(); ++i)
+  {
+    left.col(i) = LeftOut(vectors, i);
+  }
+  return left;
+}
+
 PrincipalModes
 ResidualModes(const StatisticalModelContent & atlas, double length, int modes)
 {
@@ -54,12 +59,7 @@ ResidualModes(const StatisticalModelContent & atlas, double length, int modes)
                                 "scores of " +
                                 std::to_string(subjects));
   }
-  const Eigen::MatrixXd shapes = ShapesInModes(atlas);
-  Eigen::MatrixXd       left(shapes.rows(), subjects);
-  for (Eigen::Index i = 0; i < subjects; ++i)
-  {
-    left.col(i) = LeftOut(shapes, i);
-  }
+  const Eigen::MatrixXd left = LeaveOneOutResiduals(atlas.shape, atlas.shapeScores);
   PrincipalModes        result = SmoothModes(atlas.mean.points, 1.0, length, modes);
   const Eigen::MatrixXd along = result.modes.transpose() * (atlas.shape.modes * left);
   for (Eigen::Index k = 0; k < result.variances.size(); k += axes)

@@ -29,6 +29,8 @@ namespace
 {
 constexpr std::uintmax_t LargestTransformFile = 1 << 20; ///< one has some 300 bytes
 
+constexpr double LargestTransformNumber = 1e6; ///< mm or radians
+
 using AnyTransform = itk::TransformBaseTemplate<double>;
 
 /** The words behind "NAME:" in the one line that begins so. */
@@ -73,6 +75,10 @@ NumbersOfLine(const std::vector<std::string> & lines, const std::string & name)
     if (*end != '\0' || !std::isfinite(numbers[static_cast<itk::SizeValueType>(i)]))
     {
       Refuse("has among its ", name, " something that is no number");
+    }
+    if (!(std::abs(numbers[static_cast<itk::SizeValueType>(i)]) < LargestTransformNumber))
+    {
+      Refuse("has among its ", name, " ", words[i], ", which no rigid transform of a bone has");
     }
   }
   return numbers;
@@ -154,10 +160,6 @@ ReadRigidTransform(const std::string & path)
     const auto & matrix = affine->GetMatrix();
     for (unsigned int i = 0; i < 3; ++i)
     {
-      if (!std::isfinite(affine->GetCenter()[i]) || !(std::abs(affine->GetTranslation()[i]) < 1e6))
-      {
-        Refuse("has a centre or translation that no bone has");
-      }
       for (unsigned int j = 0; j < 3; ++j)
       {
         double product = 0.0;

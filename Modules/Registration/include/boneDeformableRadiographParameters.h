@@ -4,7 +4,7 @@
 #ifndef boneDeformableRadiographParameters_h
 #define boneDeformableRadiographParameters_h
 
-#include "boneParameters.h"
+#include "boneRadiographParameters.h"
 
 namespace bone
 {
@@ -41,6 +41,16 @@ namespace bone
     "Side of the patches in which gradients are compared") \
   value(double, sigma, Sigma, 1.0, ParameterRange::Between(0.3, 20.0), "pixels", "sigma", \
     "Standard deviation of the Gaussian of which gradients are taken") \
+  flag(intensities, Intensities, true, "intensities", \
+    "Compare line integrals too, not their gradients alone; they tell density") \
+  value(double, attenuationSlope, AttenuationSlope, BoneSlopeAt60keV, ParameterRange::Positive(), "per mm and HU", \
+    "attenuation-slope", "Rise of the attenuation with the density of bone") \
+  value(double, softTissue, SoftTissue, 40.0, ParameterRange::Between(-1000.0, 3000.0), "HU", "soft-tissue", \
+    "Density of what lies about the bone: the excess over it shows") \
+  value(double, backgroundLength, BackgroundLength, 120.0, ParameterRange::Length(), "mm at the detector", \
+    "background-length", "Distance of the knots of the splines that take up what lies about the bone") \
+  value(double, gainDeviation, GainDeviation, 0.0, ParameterRange::Between(0.0, 1.0), "", "gain-deviation", \
+    "Standard deviation of each view's factor of line integrals about 1; 0: they are exact") \
   value(int, iterations, Iterations, 8, ParameterRange::Between(1, 1000), "", "iterations", \
     "Steps at the most, at each resolution") \
   value(int, seed, Seed, 1, ParameterRange::Between(0, 1e9), "", "seed", "Seed of the search's random numbers")

@@ -14,6 +14,19 @@
 
 namespace bone
 {
+/** \struct RegionDensity
+ * \brief What a registration says of one region of the bone, with standard deviations. */
+struct RegionDensity
+{
+  int    region{ 0 };
+  double volume{ 0.0 }; ///< mm^3
+  double volumeDeviation{ 0.0 };
+  double density{ 0.0 }; ///< mean over the volume, HU
+  double densityDeviation{ 0.0 };
+  double mass{ 0.0 }; ///< density times volume, HU mm^3
+  double massDeviation{ 0.0 };
+};
+
 /** \struct DeformableRegistrationResult
  * \brief What comes of a deformable registration: the most probable bone, and how sure it is. */
 struct DeformableRegistrationResult
@@ -29,12 +42,15 @@ struct DeformableRegistrationResult
   Eigen::MatrixXd      covariance;
   std::vector<Vector3> pointDeviations; ///< of each point along the geometry's axes, mm
 
-  double              cost{ 0.0 };
-  std::vector<double> costs; ///< of each view
+  std::vector<RegionDensity> regions; ///< and last, as region -1, the whole bone
+
+  double              cost{ 0.0 }; ///< of the gradients
+  std::vector<double> costs;       ///< of each view
   bool                converged{ false };
   RegistrationQuality quality{ RegistrationQuality::Failed };
   double              distinctness{ 0.0 };
-  double              precision{ 0.0 }; ///< by which the cost counts against the prior
+  double              precision{ 0.0 };          ///< by which the gradients' cost counts against the prior
+  double              intensityPrecision{ 0.0 }; ///< by which that of the line integrals does; 0: not used
 };
 
 /** \brief Finds the bone that X-rays show: pose, shape and density of an atlas (paper 7).
@@ -43,7 +59,8 @@ struct DeformableRegistrationResult
  * a few subjects' modes leave out, and with its modes of density. From `initial`, the pose of the mean is searched for
  * as RegisterRigid does; then Levenberg-Marquardt steps over all parameters, from coarse to fine images, find the
  * maximum of the posterior: the prior is a standard normal distribution of all coefficients, the likelihood
- * exp(-precision * cost) with the cost of PatchGradientCorrelation. The precision is that at which the curvature of the
+ * exp(-precision * cost) with the cost of PatchGradientCorrelation, in the last steps times that of IntensityDifference
+ * near the bone. A precision is that at which the curvature of the
  * cost agrees with how much the gradient's shares of separate blocks of the images scatter: it needs no model of the
  * noise, and counts noise that correlates over a block once.
  *

@@ -21,6 +21,8 @@ struct MetricValue
   /** #m by #b: the gradient's share of each of #b blocks of the image, whose sum it is. What the shares vary by, over
    * blocks larger than the correlation of the errors, tells the gradient's own error. */
   Eigen::MatrixXd shares;
+  /** Blocks in a row of blocks; shares.cols() is a multiple of it. */
+  Eigen::Index blocksInRow{ 1 };
 };
 
 /** \class RadiographMetric

@@ -34,6 +34,30 @@ ExtentOf(const std::vector<Vector3> & points)
   return (upper - lower).norm();
 }
 
+/** Volume, mean density and their product of each region, and last of the whole. */
+Eigen::MatrixXd
+MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const std::vector<double> & means)
+{
+  const int       most = mesh.region.empty() ? 0 : *std::max_element(mesh.region.begin(), mesh.region.end());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(most + 2, 3);
+  for (std::size_t t = 0; t < means.size(); ++t)
+  {
+    const Id4 &  ids = mesh.tetrahedra[t];
+    const double volume = SignedVolume(points[static_cast<std::size_t>(ids[0])],
+                                       points[static_cast<std::size_t>(ids[1])],
+                                       points[static_cast<std::size_t>(ids[2])],
+                                       points[static_cast<std::size_t>(ids[3])]);
+    for (const Eigen::Index row :
+         { static_cast<Eigen::Index>(mesh.region.empty() ? 0 : mesh.region[t]), static_cast<Eigen::Index>(most + 1) })
+    {
+      sums(row, 0) += volume;
+      sums(row, 2) += volume * means[t];
+    }
+  }
+  sums.col(1) = sums.col(2).array() / sums.col(0).array().max(1e-30);
+  return sums;
+}
+
 Eigen::Index
 CountOf(const PrincipalModes & modes, int most)
 {
@@ -69,7 +93,55 @@ DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
   for (Eigen::Index k = 0; k < densityModes; ++k)
   {
     const Eigen::VectorXd mode = ScaledMode(atlas.density, k);
-    densities.emplace_back(mode.data(), mode.data() + mode.size());
+    this->AddDensity({ mode.data(), mode.data() + mode.size() });
+  }
+  this->AddRegions(atlas);
+  densityModes = static_cast<Eigen::Index>(densities.size());
+}
+
+void
+DeformableModel::AddDensity(const std::vector<double> & change)
+{
+  MeshArrays mesh = mean;
+  mesh.coefficients = change;
+  cellDensities.push_back(WithMeanDensities(mesh).coefficients);
+  densities.push_back(change);
+}
+
+void
+DeformableModel::AddRegions(const StatisticalModelContent & atlas)
+{
+  if (mean.region.empty() || atlas.densityScores.rows() < 4)
+  {
+    return;
+  }
+  // Mean density of each region, of what is left of each subject.
+  const Eigen::MatrixXd       left = atlas.density.modes * LeaveOneOutResiduals(atlas.density, atlas.densityScores);
+  const std::vector<double> & ofMean = meanDensities.coefficients;
+  const Eigen::MatrixXd       volumes = MeasureCells(mean, mean.points, ofMean);
+  Eigen::VectorXd             sum = Eigen::VectorXd::Zero(volumes.rows());
+  MeshArrays                  rest = mean;
+  for (Eigen::Index i = 0; i < left.cols(); ++i)
+  {
+    rest.coefficients.assign(left.col(i).data(), left.col(i).data() + left.rows());
+    const auto means = WithMeanDensities(rest).coefficients;
+    sum += MeasureCells(mean, mean.points, means).col(1).cwiseAbs2() / static_cast<double>(left.cols());
+  }
+  const std::size_t row = mean.coefficients.size() / mean.tetrahedra.size();
+  for (Eigen::Index r = 0; r + 1 < sum.size(); ++r)
+  {
+    std::vector<double> change(mean.coefficients.size(), 0.0);
+    for (std::size_t t = 0; t < mean.tetrahedra.size(); ++t)
+    {
+      if (mean.region[t] == r)
+      {
+        std::fill_n(change.begin() + static_cast<std::ptrdiff_t>(t * row), row, std::sqrt(sum[r]));
+      }
+    }
+    if (volumes(r, 0) > 0.0 && sum[r] > 0.0)
+    {
+      this->AddDensity(change);
+    }
   }
 }
 
@@ -86,6 +158,21 @@ DeformableModel::MovePoints(const Eigen::VectorXd & coefficients) const
     }
   }
   return points;
+}
+
+Eigen::MatrixXd
+DeformableModel::MeasureRegions(const Eigen::VectorXd & coefficients) const
+{
+  std::vector<double> means = meanDensities.coefficients;
+  for (std::size_t k = 0; k < cellDensities.size(); ++k)
+  {
+    const double b = coefficients[static_cast<Eigen::Index>(displacements.size() + k)];
+    for (std::size_t t = 0; t < means.size() && b != 0.0; ++t)
+    {
+      means[t] += b * cellDensities[k][t];
+    }
+  }
+  return MeasureCells(mean, this->MovePoints(coefficients), means);
 }
 
 MeshArrays

@@ -11,7 +11,8 @@ namespace bone
 {
 /** \struct DeformableModel
  * \brief The atlas as registration moves it: a mean, and linear modes of independent standard normal coefficients: the
- * atlas' of shape, smooth ones, and the atlas' of density. */
+ * atlas' of shape, smooth ones, the atlas' of density, and one of each region's density as a whole, with the variance
+ * of what the atlas' modes leave of it. */
 struct DeformableModel
 {
   DeformableModel(const StatisticalModelContent & atlas, const DeformableRadiographParameters & parameters);
@@ -19,11 +20,12 @@ struct DeformableModel
   MeshArrays                        mean;
   MeshArrays                        meanDensities;       ///< the mean, with one density in each cell
   std::vector<std::vector<Vector3>> displacements;       ///< of shape, then smooth; mm per standard deviation
+  std::vector<std::vector<double>>  cellDensities;       ///< changes of the cells' means per standard deviation
   std::vector<std::vector<double>>  densities;           ///< changes of the coefficients per standard deviation
   double                            restVariance{ 0.0 }; ///< of a point along an axis, in none of the modes; mm^2
   Eigen::Index                      shapeModes{ 0 };
   Eigen::Index                      smoothModes{ 0 };
-  Eigen::Index                      densityModes{ 0 };
+  Eigen::Index                      densityModes{ 0 }; ///< with those of the regions
 
   Eigen::Index
   GetNumberOfCoefficients() const
@@ -34,9 +36,19 @@ struct DeformableModel
   std::vector<Vector3>
   MovePoints(const Eigen::VectorXd & coefficients) const;
 
+  /** A row for each region from 0 on, and one for the whole bone: volume (mm^3), mean density, density times volume. */
+  Eigen::MatrixXd
+  MeasureRegions(const Eigen::VectorXd & coefficients) const;
+
   /** The mesh of the coefficients: shape, smooth, density. */
   MeshArrays
   Synthesize(const Eigen::VectorXd & coefficients) const;
+
+private:
+  void
+  AddDensity(const std::vector<double> & change);
+  void
+  AddRegions(const StatisticalModelContent & atlas);
 };
 } // namespace bone
 

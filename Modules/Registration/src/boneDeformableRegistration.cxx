@@ -3,10 +3,8 @@
  *=========================================================================*/
 #include "boneDeformableRegistration.h"
 
-#include "boneDeformableModel.h"
+#include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
-#include "boneMeshDerivatives.h"
-#include "bonePatchGradientCorrelation.h"
 
 #include <Eigen/Cholesky>
 
@@ -28,133 +26,6 @@ CentreOf(const std::vector<Vector3> & points)
 {
   const Vector3 sum = std::accumulate(points.begin(), points.end(), Vector3(Vector3::Zero()));
   return sum / static_cast<double>(points.size());
-}
-
-/** Pose and coefficients. */
-struct State
-{
-  RigidPose       pose;
-  Eigen::VectorXd coefficients;
-};
-
-/** The X-rays at one resolution, and what a state's radiographs cost. */
-class DeformableCost
-{
-public:
-  DeformableCost(const DeformableModel &             model,
-                 const std::vector<RadiographView> & views,
-                 int                                 pixels,
-                 int                                 patch,
-                 double                              sigma)
-    : m_Model(model)
-  {
-    for (const RadiographView & view : views)
-    {
-      const RadiographView reduced = ReduceView(view, ReductionTo(view.view, pixels));
-      m_Views.push_back(reduced.view);
-      try
-      {
-        m_Metrics.push_back(std::make_unique<PatchGradientCorrelation>(reduced, patch, sigma));
-      }
-      catch (const std::invalid_argument & error)
-      {
-        throw std::invalid_argument("View " + std::to_string(m_Views.size()) + ": " + error.what() + '.');
-      }
-    }
-  }
-
-  /** The cost alone, with the mean density of each cell of the atlas' mean. */
-  double
-  EvaluateShape(const State & state, const Execution & execution) const
-  {
-    const std::vector<Vector3>      points = m_Model.MovePoints(state.coefficients);
-    std::vector<XRayGeometry::View> views;
-    std::vector<std::vector<float>> images;
-    std::vector<float *>            pointers;
-    for (const auto & view : m_Views)
-    {
-      views.push_back(state.pose.ToModelSpace(view));
-      images.emplace_back(static_cast<std::size_t>(view.size[0]) * static_cast<std::size_t>(view.size[1]));
-    }
-    for (auto & image : images)
-    {
-      pointers.push_back(image.data());
-    }
-    ProjectMesh(points, m_Model.meanDensities, views, MeshRadiographParameters{}, execution, pointers);
-    double sum = 0.0;
-    for (std::size_t v = 0; v < views.size(); ++v)
-    {
-      sum += m_Metrics[v]->Evaluate(pointers[v]) / static_cast<double>(views.size());
-    }
-    return sum;
-  }
-
-  MetricValue
-  Evaluate(const State & state, const Execution & execution, std::vector<double> * ofViews = nullptr) const
-  {
-    const MeshArrays mesh = m_Model.Synthesize(state.coefficients);
-    RadiographModes  modes;
-    modes.pose = true;
-    modes.poseCentre = state.pose.centre;
-    modes.shape = m_Model.displacements;
-    modes.density = m_Model.densities;
-    const auto  parameters = static_cast<Eigen::Index>(modes.Count());
-    const auto  share = 1.0 / static_cast<double>(m_Views.size());
-    MetricValue total;
-    total.gradient = Eigen::VectorXd::Zero(parameters);
-    total.hessian = Eigen::MatrixXd::Zero(parameters, parameters);
-    total.shares.resize(parameters, 0);
-    std::vector<MetricValue> values(m_Views.size());
-    for (std::size_t v = 0; v < m_Views.size(); ++v)
-    {
-      const auto           view = state.pose.ToModelSpace(m_Views[v]);
-      const std::size_t    pixels = static_cast<std::size_t>(view.size[0]) * static_cast<std::size_t>(view.size[1]);
-      std::vector<float>   images(pixels * (1 + modes.Count()));
-      std::vector<float *> pointers;
-      for (std::size_t i = 0; i <= modes.Count(); ++i)
-      {
-        pointers.push_back(&images[i * pixels]);
-      }
-      ProjectMeshDerivatives(mesh.points, mesh, view, MeshRadiographParameters{}, modes, execution, pointers);
-      values[v] = m_Metrics[v]->EvaluateDerivatives(pointers);
-    }
-    for (const MetricValue & value : values)
-    {
-      total.cost += share * value.cost;
-      total.gradient += share * value.gradient;
-      total.hessian += share * value.hessian;
-      const Eigen::Index before = total.shares.cols();
-      total.shares.conservativeResize(parameters, before + value.shares.cols());
-      total.shares.rightCols(value.shares.cols()) = share * value.shares;
-      if (ofViews != nullptr)
-      {
-        ofViews->push_back(value.cost);
-      }
-    }
-    return total;
-  }
-
-private:
-  const DeformableModel &                        m_Model;
-  std::vector<XRayGeometry::View>                m_Views;
-  std::vector<std::unique_ptr<RadiographMetric>> m_Metrics;
-};
-
-/** By how much a cost has to count for its curvature to agree with the scatter of the shares of its gradient. */
-double
-EstimatePrecision(const MetricValue & value)
-{
-  const Eigen::VectorXd scale =
-    value.hessian.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd       hessian = scale.asDiagonal() * value.hessian * scale.asDiagonal();
-  const Eigen::VectorXd mean = value.gradient / static_cast<double>(value.shares.cols());
-  const Eigen::MatrixXd shares = scale.asDiagonal() * (value.shares.colwise() - mean);
-  Eigen::MatrixXd       damped = hessian;
-  damped.diagonal().array() += 1e-2;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
-  const double                       curvature = solver.solve(hessian).trace();
-  const double                       scatter = solver.solve(shares).cwiseProduct(shares).sum();
-  return scatter > 0.0 ? curvature / scatter : 0.0;
 }
 
 class DeformableSearch
@@ -183,7 +54,7 @@ public:
   Run(const Execution & execution) const
   {
     DeformableRegistrationResult result;
-    State                        state = this->Search(execution.Part(0.0, 0.3));
+    DeformableState              state = this->Search(execution.Part(0.0, 0.3));
     std::vector<int>             resolutions;
     for (int pixels = m_P.searchPixels; pixels < m_P.pixels; pixels *= 2)
     {
@@ -192,8 +63,13 @@ public:
     resolutions.push_back(m_P.pixels);
     for (const int pixels : resolutions)
     {
-      const DeformableCost cost(m_Model, m_Views, pixels, this->PatchAt(pixels), m_P.sigma);
+      DeformableCost cost(m_Model, m_Views, m_P, pixels);
       this->Descend(cost, state, result, execution.Silent());
+      if (pixels == m_P.pixels && m_P.intensities)
+      {
+        cost.UseIntensities(state, execution.Silent());
+        this->Descend(cost, state, result, execution.Silent());
+      }
     }
     result.pose = state.pose;
     result.coefficients = state.coefficients;
@@ -216,15 +92,8 @@ private:
     m_Prior.segment<3>(3).setConstant(precision(m_P.rotationDeviation * degree));
   }
 
-  /** About as wide a patch of the bone at each resolution. */
-  int
-  PatchAt(int pixels) const
-  {
-    return std::max(4, m_P.patch * pixels / m_P.pixels);
-  }
-
   /** Pose and leading modes of shape by an evolution strategy, on small images and with each cell's mean density. */
-  State
+  DeformableState
   Search(const Execution & execution) const
   {
     constexpr int      generations = 100;
@@ -232,7 +101,7 @@ private:
     constexpr double   mostDeviations = 4.0; // of a mode of shape
     constexpr double   beyond = 1.25;        // turns about three axes add up
     const Eigen::Index shape = std::min<Eigen::Index>(m_P.searchModes, m_Model.shapeModes);
-    State              state{ m_Initial, Eigen::VectorXd::Zero(m_Model.GetNumberOfCoefficients()) };
+    DeformableState    state{ m_Initial, Eigen::VectorXd::Zero(m_Model.GetNumberOfCoefficients()) };
     Eigen::VectorXd    box(PoseSteps + shape);
     box << Vector3::Constant(beyond * m_P.searchTranslation),
       Vector3::Constant(beyond * m_P.searchRotation * std::acos(-1.0) / 180.0),
@@ -241,12 +110,12 @@ private:
     {
       return state;
     }
-    const DeformableCost cost(m_Model, m_Views, m_P.searchPixels, this->PatchAt(m_P.searchPixels), m_P.sigma);
+    const DeformableCost cost(m_Model, m_Views, m_P, m_P.searchPixels);
     EvolutionStrategy    strategy(
       Eigen::VectorXd::Zero(box.size()), 0.4, m_P.population, static_cast<std::uint64_t>(m_P.seed));
     const auto at = [&](const Eigen::VectorXd & candidate) {
       const Eigen::VectorXd step = candidate.cwiseProduct(box);
-      State                 there = state;
+      DeformableState       there = state;
       there.pose = m_Initial.Moved(step.head<PoseSteps>());
       there.coefficients.head(shape) = step.tail(shape);
       return there;
@@ -267,50 +136,86 @@ private:
 
   /** Steps from the prior's mode to a state, in the parameters' units. */
   Eigen::VectorXd
-  FromPrior(const State & state) const
+  FromPrior(const DeformableState & state) const
   {
     Eigen::VectorXd step(m_Prior.size());
     step << m_Initial.StepTo(state.pose), state.coefficients;
     return step;
   }
   double
-  PriorCost(const State & state) const
+  PriorCost(const DeformableState & state) const
   {
     return 0.5 * this->FromPrior(state).cwiseAbs2().dot(m_Prior);
   }
 
-  static State
-  Moved(const State & state, const Eigen::VectorXd & step)
+  static DeformableState
+  Moved(const DeformableState & state, const Eigen::VectorXd & step)
   {
     return { state.pose.Moved(step.head<PoseSteps>()), state.coefficients + step.tail(state.coefficients.size()) };
   }
 
+  /** Sum of the costs by their precisions, and the prior's. */
+  struct Posterior
+  {
+    std::vector<double> precisions;
+    Eigen::VectorXd     gradient;
+    Eigen::MatrixXd     hessian;
+  };
+  Posterior
+  MakePosterior(const std::vector<DeformableTerm> & values, const DeformableState & at) const
+  {
+    Posterior posterior;
+    posterior.gradient = m_Prior.cwiseProduct(this->FromPrior(at));
+    posterior.hessian = m_Prior.asDiagonal();
+    for (const DeformableTerm & value : values)
+    {
+      posterior.precisions.push_back(value.EstimatePrecision());
+      posterior.gradient += posterior.precisions.back() * value.gradient;
+      posterior.hessian += posterior.precisions.back() * value.hessian;
+    }
+    return posterior;
+  }
+
+  /** How much the logarithm of the posterior rises. */
+  double
+  Gain(const DeformableState &             at,
+       const std::vector<DeformableTerm> & values,
+       const DeformableState &             next,
+       const std::vector<DeformableTerm> & there,
+       const std::vector<double> &         precisions) const
+  {
+    double gain = this->PriorCost(at) - this->PriorCost(next);
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      gain += precisions[k] * (values[k].cost - there[k].cost);
+    }
+    return gain;
+  }
+
   void
   Descend(const DeformableCost &         cost,
-          State &                        at,
+          DeformableState &              at,
           DeformableRegistrationResult & result,
           const Execution &              execution) const
   {
-    constexpr double least = 0.02; // of the logarithm of the posterior
-    MetricValue      value = cost.Evaluate(at, execution);
+    constexpr double least = 0.05; // of the logarithm of the posterior
+    auto             values = cost.Evaluate(at, execution);
     double           damping = 1e-3;
     int              refusals = 0;
     result.converged = false;
     for (int i = 0; i < m_P.iterations && !result.converged; ++i)
     {
-      const double    precision = EstimatePrecision(value);
-      Eigen::MatrixXd hessian = precision * value.hessian;
-      hessian.diagonal() += m_Prior;
-      const Eigen::VectorXd gradient = precision * value.gradient + m_Prior.cwiseProduct(this->FromPrior(at));
+      const Posterior posterior = this->MakePosterior(values, at);
+      Eigen::MatrixXd hessian = posterior.hessian;
       hessian.diagonal() *= 1.0 + damping;
       hessian.diagonal().array() += std::numeric_limits<double>::min();
-      const State       next = Moved(at, -hessian.ldlt().solve(gradient));
-      const MetricValue there = cost.Evaluate(next, execution);
-      const double      gain = precision * (value.cost - there.cost) + this->PriorCost(at) - this->PriorCost(next);
+      const DeformableState next = Moved(at, -hessian.ldlt().solve(posterior.gradient));
+      auto                  there = cost.Evaluate(next, execution);
+      const double          gain = this->Gain(at, values, next, there, posterior.precisions);
       if (gain > 0.0)
       {
         at = next;
-        value = there;
+        values = std::move(there);
         damping = std::max(1e-6, 0.2 * damping);
         refusals = 0;
       }
@@ -322,14 +227,15 @@ private:
       result.converged = refusals == 2 || (gain > 0.0 && gain < least);
       if (m_Observe)
       {
-        m_Observe(at.coefficients, value.cost);
+        m_Observe(at.coefficients, values[0].cost);
       }
     }
-    result.cost = value.cost;
-    result.precision = EstimatePrecision(value);
-    Eigen::MatrixXd posterior = result.precision * value.hessian;
-    posterior.diagonal() += m_Prior;
-    result.covariance = posterior.ldlt().solve(Eigen::MatrixXd::Identity(posterior.rows(), posterior.cols()));
+    const Posterior posterior = this->MakePosterior(values, at);
+    result.cost = values[0].cost;
+    result.precision = posterior.precisions[0];
+    result.intensityPrecision = posterior.precisions.size() > 1 ? posterior.precisions[1] : 0.0;
+    const auto size = posterior.hessian.rows();
+    result.covariance = posterior.hessian.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   }
 
   /** The mesh in its place, and the deviations of its points. */
@@ -337,6 +243,7 @@ private:
   Finish(DeformableRegistrationResult & result) const
   {
     result.mesh = m_Model.Synthesize(result.coefficients);
+    result.regions = this->MeasureRegions(result);
     const auto      count = static_cast<Eigen::Index>(m_Model.displacements.size());
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, PoseSteps + count);
     const auto      covariance = result.covariance.topLeftCorner(PoseSteps + count, PoseSteps + count);
@@ -358,6 +265,44 @@ private:
       result.pointDeviations.emplace_back((variances.array() + m_Model.restVariance).sqrt());
       x = result.pose.Apply(x);
     }
+  }
+
+  /** What the regions hold, and the deviations that come of those of the coefficients. */
+  std::vector<RegionDensity>
+  MeasureRegions(const DeformableRegistrationResult & result) const
+  {
+    constexpr double             step = 0.5;
+    const auto                   count = result.coefficients.size();
+    const auto                   covariance = result.covariance.bottomRightCorner(count, count);
+    const Eigen::MatrixXd        at = m_Model.MeasureRegions(result.coefficients);
+    std::vector<Eigen::MatrixXd> slopes;
+    for (Eigen::Index k = 0; k < count; ++k)
+    {
+      const Eigen::VectorXd move = step * Eigen::VectorXd::Unit(count, k);
+      slopes.emplace_back(
+        (m_Model.MeasureRegions(result.coefficients + move) - m_Model.MeasureRegions(result.coefficients - move)) /
+        (2.0 * step));
+    }
+    std::vector<RegionDensity> regions;
+    for (Eigen::Index r = 0; r < at.rows(); ++r)
+    {
+      std::array<double, 3> deviations{};
+      for (Eigen::Index c = 0; c < 3; ++c)
+      {
+        Eigen::VectorXd slope(count);
+        for (Eigen::Index k = 0; k < count; ++k)
+        {
+          slope[k] = slopes[static_cast<std::size_t>(k)](r, c);
+        }
+        deviations[static_cast<std::size_t>(c)] = std::sqrt(slope.dot(covariance * slope));
+      }
+      const int region = r + 1 < at.rows() ? static_cast<int>(r) : -1;
+      if (at(r, 0) > 0.0)
+      {
+        regions.push_back({ region, at(r, 0), deviations[0], at(r, 1), deviations[1], at(r, 2), deviations[2] });
+      }
+    }
+    return regions;
   }
 
   const DeformableRadiographParameters &                       m_P;

@@ -251,6 +251,7 @@ GradientOrientation::EvaluateDerivatives(const std::vector<float *> & images) co
   const Orientation model = data.Orient(images[0]);
   const ShareBlocks blocks(data.size);
   MetricValue       value;
+  value.blocksInRow = blocks.columns;
   value.shares = Eigen::MatrixXd::Zero(m, blocks.GetNumberOfBlocks());
   value.gradient = Eigen::VectorXd::Zero(m);
   value.hessian = Eigen::MatrixXd::Zero(m, m);

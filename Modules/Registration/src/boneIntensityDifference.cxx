@@ -341,6 +341,7 @@ IntensityDifference::EvaluateDerivatives(const std::vector<float *> & images) co
 
   MetricValue value;
   value.cost = fit.objective / data.totalWeight;
+  value.blocksInRow = blocks.columns;
   value.shares = Eigen::MatrixXd::Zero(m, blocks.GetNumberOfBlocks());
   Eigen::VectorXd     blockWeights = Eigen::VectorXd::Zero(blocks.GetNumberOfBlocks());
   GramSum             gram(m);

@@ -309,6 +309,7 @@ PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & image
   if (!(total > 0.0))
   {
     value.cost = 1.0;
+    value.shares.resize(m, 0);
     return value;
   }
   const double correlation = shared / total;
@@ -317,6 +318,7 @@ PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & image
   constexpr int width = 4;
   const int     clusters = (m_Data->blocks[0] - 1 + width - 1) / width;
   const int     rows = (m_Data->blocks[1] - 1 + width - 1) / width;
+  value.blocksInRow = clusters;
   value.shares = Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(clusters) * rows);
   Eigen::VectorXd ofGram = Eigen::VectorXd::Zero(patches);
   for (Eigen::Index p = 0; p < patches; ++p)

@@ -304,6 +304,13 @@ private:
   {
     const MetricValue value = m_Costs.back()->EvaluateDerivatives(result.pose, execution, { m_Surface });
     Matrix6           hessian = value.hessian.topLeftCorner<6, 6>();
+    if (!(hessian.diagonal().maxCoeff() > 0.0))
+    {
+      // No view shows the model: nothing is known.
+      constexpr double anywhere = 1e4; // mm
+      result.covariance = anywhere * anywhere * Matrix6::Identity();
+      return;
+    }
     hessian.diagonal().array() += 1e-12 * hessian.diagonal().maxCoeff() + std::numeric_limits<double>::min();
     const Eigen::LDLT<Matrix6> solver(hessian);
     const Eigen::MatrixXd      ofShares = solver.solve(value.shares.topRows<6>());

@@ -183,6 +183,19 @@ TEST(RigidRadiographRegistration, AnXRayWithoutTheBoneIsNoSuccess)
   EXPECT_EQ(registration->GetResult().searches, 2);
 }
 
+TEST(RigidRadiographRegistration, ABoneThatNoViewShowsIsNoSuccess)
+{
+  auto registration = MakeRegistration(Truth);
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  registration->SetInitialTransform(PoseOf(0, 0, 3000, 0, 0, 0).ToTransform());
+  registration->Update();
+  const auto & result = registration->GetResult();
+  EXPECT_EQ(result.quality, RegistrationQuality::Failed);
+  EXPECT_EQ(result.cost, 1.0);
+  EXPECT_GE(result.covariance(0, 0), 1e6); // it could be anywhere
+}
+
 TEST(RigidRadiographRegistration, IsLazyAndTellsEachStep)
 {
   auto   registration = MakeRegistration(Truth);

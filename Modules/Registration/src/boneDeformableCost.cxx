@@ -1,0 +1,231 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneDeformableCost.h"
+
+#include "boneIntensityDifference.h"
+#include "boneMeshDerivatives.h"
+#include "bonePatchGradientCorrelation.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace bone
+{
+namespace
+{
+/** A weight of 1 within `radius` pixels, along columns and rows, of where the image is above 0. */
+std::vector<float>
+Surroundings(const std::vector<float> & image, const std::array<int, 2> & size, int radius)
+{
+  std::vector<float> along(image.size(), 0.0f), both(image.size(), 0.0f);
+  for (int r = 0; r < size[1]; ++r)
+  {
+    for (int c = 0; c < size[0]; ++c)
+    {
+      const std::size_t at = static_cast<std::size_t>(r) * size[0] + c;
+      const auto        from = image.begin() + (at - std::min(radius, c));
+      const auto        to = image.begin() + (at + std::min(radius, size[0] - 1 - c)) + 1;
+      along[at] = std::any_of(from, to, [](float x) { return x != 0.0f; }) ? 1.0f : 0.0f;
+    }
+  }
+  for (int r = 0; r < size[1]; ++r)
+  {
+    for (int y = std::max(0, r - radius); y <= std::min(size[1] - 1, r + radius); ++y)
+    {
+      for (int c = 0; c < size[0]; ++c)
+      {
+        float & weight = both[static_cast<std::size_t>(r) * size[0] + c];
+        weight = std::max(weight, along[static_cast<std::size_t>(y) * size[0] + c]);
+      }
+    }
+  }
+  return both;
+}
+
+/** Covariance of the sum of the shares, where blocks of `width` by `width` are independent. */
+Eigen::MatrixXd
+ScatterOf(const MetricValue & value, Eigen::Index width)
+{
+  const Eigen::Index inRow = value.blocksInRow, rows = value.shares.cols() / inRow;
+  const Eigen::Index merged = (inRow + width - 1) / width;
+  Eigen::MatrixXd    sums = Eigen::MatrixXd::Zero(value.shares.rows(), merged * ((rows + width - 1) / width));
+  for (Eigen::Index b = 0; b < value.shares.cols(); ++b)
+  {
+    sums.col(b / inRow / width * merged + b % inRow / width) += value.shares.col(b);
+  }
+  return sums * sums.transpose();
+}
+
+void
+AddShare(DeformableTerm & total, const MetricValue & value, double share)
+{
+  total.cost += share * value.cost;
+  total.gradient += share * value.gradient;
+  total.hessian += share * value.hessian;
+  for (std::size_t k = 0; k < total.scatters.size() && value.shares.cols() > 0; ++k)
+  {
+    total.scatters[k] += share * share * ScatterOf(value, Eigen::Index{ 1 } << k);
+  }
+}
+} // namespace
+
+double
+DeformableTerm::EstimatePrecision() const
+{
+  constexpr double      damping = 1e-2;
+  const Eigen::VectorXd scale =
+    hessian.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  Eigen::MatrixXd       damped = scaled;
+  damped.diagonal().array() += damping;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
+  const double                       curvature = solver.solve(scaled).trace();
+  double                             largest = 0.0;
+  for (const Eigen::MatrixXd & scatter : scatters)
+  {
+    largest = std::max(largest, solver.solve(scale.asDiagonal() * scatter * scale.asDiagonal()).trace());
+  }
+  return largest > 0.0 ? curvature / largest : 0.0;
+}
+
+DeformableCost::DeformableCost(const DeformableModel &                model,
+                               const std::vector<RadiographView> &    views,
+                               const DeformableRadiographParameters & parameters,
+                               int                                    pixels)
+  : m_Model(model)
+  , m_P(parameters)
+  , m_Metrics(1)
+{
+  m_Attenuation.scale = parameters.attenuationSlope;
+  m_Attenuation.offset = -parameters.attenuationSlope * parameters.softTissue;
+  // About as wide a patch of the bone at each resolution.
+  const int patch = std::max(4, parameters.patch * pixels / parameters.pixels);
+  for (const RadiographView & view : views)
+  {
+    m_Views.push_back(ReduceView(view, ReductionTo(view.view, pixels)));
+    try
+    {
+      m_Metrics[0].push_back(std::make_unique<PatchGradientCorrelation>(m_Views.back(), patch, parameters.sigma));
+    }
+    catch (const std::invalid_argument & error)
+    {
+      throw std::invalid_argument("View " + std::to_string(m_Views.size()) + ": " + error.what() + '.');
+    }
+  }
+}
+
+std::vector<std::vector<float>>
+DeformableCost::Project(const std::vector<Vector3> & points,
+                        const MeshCells &            cells,
+                        const RigidPose &            pose,
+                        const Execution &            execution) const
+{
+  std::vector<XRayGeometry::View> views;
+  std::vector<std::vector<float>> images;
+  std::vector<float *>            pointers;
+  for (const RadiographView & view : m_Views)
+  {
+    views.push_back(pose.ToModelSpace(view.view));
+    images.emplace_back(view.GetNumberOfPixels());
+  }
+  for (auto & image : images)
+  {
+    pointers.push_back(image.data());
+  }
+  ProjectMesh(points, cells, views, m_Attenuation, execution, pointers);
+  return images;
+}
+
+void
+DeformableCost::UseIntensities(const DeformableState & state, const Execution & execution)
+{
+  constexpr double margin = 0.25; // of the background's length
+  constexpr double leastScale = 1e-3;
+  const MeshArrays mesh = m_Model.Synthesize(state.coefficients);
+  const auto       images = this->Project(mesh.points, mesh, state.pose, execution);
+  m_Metrics.resize(2);
+  m_Metrics[1].clear();
+  for (std::size_t v = 0; v < m_Views.size(); ++v)
+  {
+    RadiographView view = m_Views[v];
+    const double   length = m_P.backgroundLength / view.view.spacing[0];
+    const auto     near = Surroundings(images[v], view.view.size, std::max(3, static_cast<int>(margin * length)));
+    if (view.weights.empty())
+    {
+      view.weights = near;
+    }
+    for (std::size_t i = 0; i < near.size(); ++i)
+    {
+      view.weights[i] *= near[i];
+    }
+    IntensityDifferenceParameters parameters;
+    parameters.knotSpacing = std::max(4.0, length);
+    parameters.gainDeviation = m_P.gainDeviation;
+    parameters.scale = std::max(leastScale, IntensityDifference(view, parameters).EstimateScale(images[v].data()));
+    m_Metrics[1].push_back(std::make_unique<IntensityDifference>(view, parameters));
+  }
+}
+
+std::vector<DeformableTerm>
+DeformableCost::Evaluate(const DeformableState & state,
+                         const Execution &       execution,
+                         std::vector<double> *   ofViews) const
+{
+  const MeshArrays mesh = m_Model.Synthesize(state.coefficients);
+  RadiographModes  modes;
+  modes.pose = true;
+  modes.poseCentre = state.pose.centre;
+  modes.shape = m_Model.displacements;
+  modes.density = m_Model.densities;
+  const auto                  count = static_cast<Eigen::Index>(modes.Count());
+  std::vector<DeformableTerm> totals(m_Metrics.size());
+  for (DeformableTerm & total : totals)
+  {
+    total.scatters.fill(Eigen::MatrixXd::Zero(count, count));
+    total.gradient = Eigen::VectorXd::Zero(count);
+    total.hessian = Eigen::MatrixXd::Zero(count, count);
+  }
+  for (std::size_t v = 0; v < m_Views.size(); ++v)
+  {
+    const std::size_t    pixels = m_Views[v].GetNumberOfPixels();
+    std::vector<float>   images(pixels * (1 + modes.Count()));
+    std::vector<float *> pointers;
+    for (std::size_t i = 0; i <= modes.Count(); ++i)
+    {
+      pointers.push_back(&images[i * pixels]);
+    }
+    ProjectMeshDerivatives(
+      mesh.points, mesh, state.pose.ToModelSpace(m_Views[v].view), m_Attenuation, modes, execution, pointers);
+    std::vector<MetricValue> values(m_Metrics.size());
+    execution.For(values.size(), [&](std::size_t k) { values[k] = m_Metrics[k][v]->EvaluateDerivatives(pointers); });
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      AddShare(totals[k], values[k], 1.0 / static_cast<double>(m_Views.size()));
+    }
+    if (ofViews != nullptr)
+    {
+      ofViews->push_back(values[0].cost);
+    }
+  }
+  return totals;
+}
+
+double
+DeformableCost::EvaluateShape(const DeformableState & state, const Execution & execution) const
+{
+  const auto images =
+    this->Project(m_Model.MovePoints(state.coefficients), m_Model.meanDensities, state.pose, execution);
+  double sum = 0.0;
+  for (std::size_t v = 0; v < images.size(); ++v)
+  {
+    sum += m_Metrics[0][v]->Evaluate(images[v].data()) / static_cast<double>(images.size());
+  }
+  return sum;
+}
+} // namespace bone

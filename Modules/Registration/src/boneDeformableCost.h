@@ -1,0 +1,82 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneDeformableCost_h
+#define boneDeformableCost_h
+
+#include "boneDeformableModel.h"
+#include "boneExecution.h"
+#include "boneMeshRadiograph.h"
+#include "boneRadiographMetric.h"
+#include "boneRigidPose.h"
+
+#include <array>
+
+namespace bone
+{
+/** Pose and coefficients of a bone. */
+struct DeformableState
+{
+  RigidPose       pose;
+  Eigen::VectorXd coefficients;
+};
+
+/** A metric's cost over all views, and how far its gradient may be off. */
+struct DeformableTerm
+{
+  double          cost{ 0.0 };
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  /** Covariance of the gradient from the scatter of its shares, of blocks alone, of two by two and of four by four. */
+  std::array<Eigen::MatrixXd, 3> scatters;
+
+  /** By how much the cost has to count for its curvature to agree with the scatter: the least of those that the three
+   * sizes of blocks give, as errors may correlate over more than one. */
+  double
+  EstimatePrecision() const;
+};
+
+/** \class DeformableCost
+ * \brief How badly the radiographs of a bone agree with X-rays at one resolution: gradients, and, once they are asked
+ * for, line integrals. */
+class DeformableCost
+{
+public:
+  /** Throws std::invalid_argument with the number of a view that cannot be used. */
+  DeformableCost(const DeformableModel &                model,
+                 const std::vector<RadiographView> &    views,
+                 const DeformableRadiographParameters & parameters,
+                 int                                    pixels);
+
+  /** Compares line integrals from now on, around where the bone of this state shows. */
+  void
+  UseIntensities(const DeformableState & state, const Execution & execution);
+
+  /** The mean over the views of the gradients' cost, and of the line integrals' where they are used, with their
+   * derivatives by the six steps of the pose and the coefficients. `ofViews`: where given, each view's first cost. */
+  std::vector<DeformableTerm>
+  Evaluate(const DeformableState & state, const Execution & execution, std::vector<double> * ofViews = nullptr) const;
+
+  /** The gradients' cost alone, with the mean density of each cell of the atlas' mean. */
+  double
+  EvaluateShape(const DeformableState & state, const Execution & execution) const;
+
+private:
+  using Metrics = std::vector<std::unique_ptr<RadiographMetric>>;
+
+  /** The radiographs of points and cells. */
+  std::vector<std::vector<float>>
+  Project(const std::vector<Vector3> & points,
+          const MeshCells &            cells,
+          const RigidPose &            pose,
+          const Execution &            execution) const;
+
+  const DeformableModel &                m_Model;
+  const DeformableRadiographParameters & m_P;
+  MeshRadiographParameters               m_Attenuation;
+  std::vector<RadiographView>            m_Views;
+  std::vector<Metrics>                   m_Metrics; ///< of gradients, of line integrals; one a view
+};
+} // namespace bone
+
+#endif
