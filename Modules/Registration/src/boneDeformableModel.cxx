@@ -79,7 +79,7 @@ DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
     smooth = parameters.smoothDeviation > 0.0
                ? SmoothModes(mean.points, parameters.smoothDeviation, length, parameters.smoothModes)
                : ResidualModes(atlas, length, parameters.smoothModes);
-    restVariance = (smooth.totalVariance - smooth.variances.sum()) / static_cast<double>(smooth.GetDimension());
+    residualVariance = smooth.totalVariance / static_cast<double>(smooth.GetDimension());
   }
   smoothModes = smooth.GetNumberOfModes();
   for (Eigen::Index k = 0; k < shapeModes; ++k)

@@ -18,14 +18,14 @@ struct DeformableModel
   DeformableModel(const StatisticalModelContent & atlas, const DeformableRadiographParameters & parameters);
 
   MeshArrays                        mean;
-  MeshArrays                        meanDensities;       ///< the mean, with one density in each cell
-  std::vector<std::vector<Vector3>> displacements;       ///< of shape, then smooth; mm per standard deviation
-  std::vector<std::vector<double>>  cellDensities;       ///< changes of the cells' means per standard deviation
-  std::vector<std::vector<double>>  densities;           ///< changes of the coefficients per standard deviation
-  double                            restVariance{ 0.0 }; ///< of a point along an axis, in none of the modes; mm^2
-  Eigen::Index                      shapeModes{ 0 };
-  Eigen::Index                      smoothModes{ 0 };
-  Eigen::Index                      densityModes{ 0 }; ///< with those of the regions
+  MeshArrays                        meanDensities; ///< the mean, with one density in each cell
+  std::vector<std::vector<Vector3>> displacements; ///< of shape, then smooth; mm per standard deviation
+  std::vector<std::vector<double>>  cellDensities; ///< changes of the cells' means per standard deviation
+  std::vector<std::vector<double>>  densities;     ///< changes of the coefficients per standard deviation
+  double       residualVariance{ 0.0 };            ///< of a point along an axis, beside the atlas' modes; mm^2
+  Eigen::Index shapeModes{ 0 };
+  Eigen::Index smoothModes{ 0 };
+  Eigen::Index densityModes{ 0 }; ///< with those of the regions
 
   Eigen::Index
   GetNumberOfCoefficients() const

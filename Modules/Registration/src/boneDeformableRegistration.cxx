@@ -169,7 +169,10 @@ private:
     posterior.hessian = m_Prior.asDiagonal();
     for (const DeformableTerm & value : values)
     {
-      posterior.precisions.push_back(value.EstimatePrecision());
+      // What shape leaves of the line integrals correlates over the whole bone: leave-one-out over femora, mean
+      // densities are three times as exact where they count by a tenth.
+      constexpr double ofIntensities = 0.1;
+      posterior.precisions.push_back((posterior.precisions.empty() ? 1.0 : ofIntensities) * value.EstimatePrecision());
       posterior.gradient += posterior.precisions.back() * value.gradient;
       posterior.hessian += posterior.precisions.back() * value.hessian;
     }
@@ -234,8 +237,15 @@ private:
     result.cost = values[0].cost;
     result.precision = posterior.precisions[0];
     result.intensityPrecision = posterior.precisions.size() > 1 ? posterior.precisions[1] : 0.0;
-    const auto size = posterior.hessian.rows();
-    result.covariance = posterior.hessian.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    // Of the errors of the gradient and of what the prior pulls, about the truth.
+    const auto      size = posterior.hessian.rows();
+    Eigen::MatrixXd errors = m_Prior.asDiagonal();
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      errors += posterior.precisions[k] * posterior.precisions[k] * values[k].scatters.back();
+    }
+    const Eigen::MatrixXd inverse = posterior.hessian.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+    result.covariance = inverse * errors * inverse;
   }
 
   /** The mesh in its place, and the deviations of its points. */
@@ -262,7 +272,9 @@ private:
       }
       const Eigen::MatrixXd turned = result.pose.rotation * jacobian;
       const Vector3         variances = (turned * covariance).cwiseProduct(turned).rowwise().sum();
-      result.pointDeviations.emplace_back((variances.array() + m_Model.restVariance).sqrt());
+      // Leave-one-out, the smooth modes bring a bone's surface nearer, but its points along the surface not: two views
+      // show little of them.
+      result.pointDeviations.emplace_back((variances.array() + m_Model.residualVariance).sqrt());
       x = result.pose.Apply(x);
     }
   }

@@ -31,20 +31,18 @@ CheckedSigma(double sigma)
   CheckPositive("Gaussian's standard deviation", sigma);
   return sigma;
 }
-
 } // namespace
-
-/** An image's gradients and what becomes of them. */
-struct Orientation
-{
-  GradientComponents  unit;       ///< the gradients g, then u = g / q
-  std::vector<double> inverse;    ///< 1 / q of each pixel, q^2 = |g|^2 + e^2
-  double              meanSquare; ///< weighted mean of |g|^2; 0 for a constant image
-  double              norm;       ///< square root of the sum of w |u|^2
-};
 
 struct GradientOrientation::Data
 {
+  /** An image's gradients and what becomes of them. */
+  struct Orientation
+  {
+    GradientComponents  unit;       ///< the gradients g, then u = g / q
+    std::vector<double> inverse;    ///< 1 / q of each pixel, q^2 = |g|^2 + e^2
+    double              meanSquare; ///< weighted mean of |g|^2; 0 for a constant image
+    double              norm;       ///< square root of the sum of w |u|^2
+  };
   CountedGradient    gradient;
   std::array<int, 2> size;
   double             threshold;
@@ -235,7 +233,7 @@ GradientOrientation::GradientOrientation(const RadiographView & target, double s
 double
 GradientOrientation::Evaluate(const float * image) const
 {
-  const Orientation model = m_Data->Orient(image);
+  const Data::Orientation model = m_Data->Orient(image);
   if (model.meanSquare == 0.0)
   {
     return 1.0;
@@ -246,11 +244,11 @@ GradientOrientation::Evaluate(const float * image) const
 MetricValue
 GradientOrientation::EvaluateDerivatives(const std::vector<float *> & images) const
 {
-  const Data &      data = *m_Data;
-  const auto        m = static_cast<Eigen::Index>(images.size()) - 1;
-  const Orientation model = data.Orient(images[0]);
-  const ShareBlocks blocks(data.size);
-  MetricValue       value;
+  const Data &            data = *m_Data;
+  const auto              m = static_cast<Eigen::Index>(images.size()) - 1;
+  const Data::Orientation model = data.Orient(images[0]);
+  const ShareBlocks       blocks(data.size);
+  MetricValue             value;
   value.blocksInRow = blocks.columns;
   value.shares = Eigen::MatrixXd::Zero(m, blocks.GetNumberOfBlocks());
   value.gradient = Eigen::VectorXd::Zero(m);

@@ -265,6 +265,88 @@ struct IntensityDifference::Data
     }
     return fit;
   }
+
+  /** Square roots of the pixels' weights times Huber's. */
+  std::vector<float>
+  Roots(const Fit & fit) const
+  {
+    std::vector<float> roots(weights.size());
+    std::transform(weights.begin(), weights.end(), fit.residuals.begin(), roots.begin(), [this](float w, double z) {
+      return static_cast<float>(std::sqrt(w * this->Weigh(z, Curvature::Reweighted)));
+    });
+    return roots;
+  }
+
+  /** The unknowns that fit the residuals' derivatives best, #unknowns by #parameters. */
+  Eigen::MatrixXd
+  Regress(const Fit & fit, const std::vector<float> & roots, const std::vector<float *> & images) const
+  {
+    const Eigen::Index n = expected.size();
+    Eigen::MatrixXd    taken = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(images.size()) - 1);
+    if (n == 0)
+    {
+      return taken;
+    }
+    const double        factor = this->Gain(fit.unknowns) / (parameters.scale * parameters.scale);
+    std::vector<double> products(static_cast<std::size_t>(size[0]));
+    for (Eigen::Index k = 0; k < taken.cols(); ++k)
+    {
+      const float * derivative = images[static_cast<std::size_t>(k) + 1];
+      for (int r = 0; r < size[1]; ++r)
+      {
+        double withGain = 0.0;
+        for (std::size_t c = 0, i = this->RowStart(r); c < products.size(); ++c, ++i)
+        {
+          const double root = roots[i];
+          products[c] = root > 0.0 ? factor * root * root * derivative[i] : 0.0;
+          withGain += products[c] * fit.image[i];
+        }
+        if (this->FitsBackground())
+        {
+          background.AddProducts(r, products.data(), taken.col(k));
+        }
+        if (this->FitsGain())
+        {
+          taken(n - 1, k) += withGain;
+        }
+      }
+    }
+    Eigen::MatrixXd second;
+    Eigen::VectorXd descent;
+    this->Differentiate(fit, Curvature::Reweighted, second, descent);
+    SparseCholesky solver;
+    Factorize(solver, second);
+    return solver.Solve(taken);
+  }
+
+  /** A row of the derivatives of the residuals in scales, less what the unknowns take up, times the roots: #columns by
+   * #parameters. */
+  void
+  Project(int                          row,
+          const Fit &                  fit,
+          const std::vector<float> &   roots,
+          const Eigen::MatrixXd &      taken,
+          const std::vector<float *> & images,
+          Eigen::MatrixXf &            part) const
+  {
+    const double        gain = this->Gain(fit.unknowns);
+    std::vector<double> smooth(static_cast<std::size_t>(size[0]), 0.0);
+    for (Eigen::Index k = 0; k < part.cols(); ++k)
+    {
+      const float * derivative = images[static_cast<std::size_t>(k) + 1];
+      if (this->FitsBackground())
+      {
+        background.Evaluate(row, taken.col(k), smooth.data());
+      }
+      const double ofGain = this->FitsGain() ? taken(taken.rows() - 1, k) : 0.0;
+      for (std::size_t c = 0, i = this->RowStart(row); c < smooth.size(); ++c, ++i)
+      {
+        const double rest = gain * derivative[i] - smooth[c] - ofGain * fit.image[i];
+        part(static_cast<Eigen::Index>(c), k) =
+          roots[i] > 0.0f ? static_cast<float>(roots[i] / parameters.scale * rest) : 0.0f;
+      }
+    }
+  }
 };
 
 IntensityDifference::~IntensityDifference() = default;
@@ -292,93 +374,35 @@ IntensityDifference::EvaluateDerivatives(const std::vector<float *> & images) co
   const Data &       data = *m_Data;
   const auto         fit = data.Minimize(images[0]);
   const auto         m = static_cast<Eigen::Index>(images.size()) - 1;
-  const Eigen::Index n = data.expected.size();
   const Eigen::Index columns = data.size[0];
-  const double       gain = data.Gain(fit.unknowns);
   const ShareBlocks  blocks(data.size);
 
-  // With roots r of the pixels' weights, r / s the derivatives and r z the residuals: sums are products of both.
-  std::vector<float> roots(data.weights.size());
-  std::transform(
-    data.weights.begin(), data.weights.end(), fit.residuals.begin(), roots.begin(), [&data](float w, double z) {
-      return static_cast<float>(std::sqrt(w * data.Weigh(z, Curvature::Reweighted)));
-    });
-  // What background and gain take up of the derivatives.
-  Eigen::MatrixXd taken = Eigen::MatrixXd::Zero(n, m);
-  if (n > 0)
-  {
-    const double        scaled = gain / (data.parameters.scale * data.parameters.scale);
-    std::vector<double> products(static_cast<std::size_t>(columns));
-    for (Eigen::Index k = 0; k < m; ++k)
-    {
-      const float * derivative = images[static_cast<std::size_t>(k) + 1];
-      for (int r = 0; r < data.size[1]; ++r)
-      {
-        double withGain = 0.0;
-        for (std::size_t c = 0, i = data.RowStart(r); c < products.size(); ++c, ++i)
-        {
-          const double root = roots[i];
-          products[c] = root > 0.0 ? scaled * root * root * derivative[i] : 0.0;
-          withGain += products[c] * fit.image[i];
-        }
-        if (data.FitsBackground())
-        {
-          data.background.AddProducts(r, products.data(), taken.col(k));
-        }
-        if (data.FitsGain())
-        {
-          taken(n - 1, k) += withGain;
-        }
-      }
-    }
-    Eigen::MatrixXd second;
-    Eigen::VectorXd descent;
-    data.Differentiate(fit, Curvature::Reweighted, second, descent);
-    SparseCholesky solver;
-    Factorize(solver, second);
-    taken = solver.Solve(taken);
-  }
+  const std::vector<float> roots = data.Roots(fit);
+  const Eigen::MatrixXd    taken = data.Regress(fit, roots, images);
 
   MetricValue value;
   value.cost = fit.objective / data.totalWeight;
   value.blocksInRow = blocks.columns;
   value.shares = Eigen::MatrixXd::Zero(m, blocks.GetNumberOfBlocks());
-  Eigen::VectorXd     blockWeights = Eigen::VectorXd::Zero(blocks.GetNumberOfBlocks());
-  GramSum             gram(m);
-  Eigen::MatrixXf     part(columns, m);
-  Eigen::VectorXf     residuals(columns);
-  std::vector<double> smooth(static_cast<std::size_t>(columns), 0.0);
+  Eigen::VectorXd blockWeights = Eigen::VectorXd::Zero(blocks.GetNumberOfBlocks());
+  GramSum         gram(m);
+  Eigen::MatrixXf part(columns, m);
+  Eigen::VectorXf residuals(columns);
   for (int r = 0; r < data.size[1]; ++r)
   {
-    const std::size_t start = data.RowStart(r);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
-      const std::size_t i = start + static_cast<std::size_t>(c);
+      const std::size_t i = data.RowStart(r) + static_cast<std::size_t>(c);
       residuals[c] = static_cast<float>(roots[i] * fit.residuals[i]);
       blockWeights[blocks.BlockOf(static_cast<int>(c), r)] += data.weights[i];
     }
-    for (Eigen::Index k = 0; k < m; ++k)
+    data.Project(r, fit, roots, taken, images, part);
+    for (int b = 0; b < blocks.columns; ++b)
     {
-      const float * derivative = images[static_cast<std::size_t>(k) + 1];
-      if (data.FitsBackground())
-      {
-        data.background.Evaluate(r, taken.col(k), smooth.data());
-      }
-      const double ofGain = data.FitsGain() ? taken(n - 1, k) : 0.0;
-      for (std::size_t c = 0, i = start; c < smooth.size(); ++c, ++i)
-      {
-        part(static_cast<Eigen::Index>(c), k) =
-          roots[i] > 0.0f ? static_cast<float>(roots[i] / data.parameters.scale *
-                                               (gain * derivative[i] - smooth[c] - ofGain * fit.image[i]))
-                          : 0.0f;
-      }
-      for (int b = 0; b < blocks.columns; ++b)
-      {
-        const Eigen::Index first = static_cast<Eigen::Index>(b) * ShareBlocks::side;
-        const Eigen::Index count = std::min<Eigen::Index>(ShareBlocks::side, columns - first);
-        value.shares(k, blocks.BlockOf(static_cast<int>(first), r)) -=
-          part.col(k).segment(first, count).dot(residuals.segment(first, count));
-      }
+      const Eigen::Index first = static_cast<Eigen::Index>(b) * ShareBlocks::side;
+      const Eigen::Index count = std::min<Eigen::Index>(ShareBlocks::side, columns - first);
+      value.shares.col(blocks.BlockOf(static_cast<int>(first), r)) -=
+        (part.middleRows(first, count).transpose() * residuals.segment(first, count)).cast<double>();
     }
     gram.Add(part, columns);
   }

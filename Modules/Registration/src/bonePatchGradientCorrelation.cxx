@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace bone
 {
@@ -201,28 +202,34 @@ struct PatchGradientCorrelation::Data
         ofBlocks[this->BlockOf(p, i % 2, i / 2)] += ofPatches[p];
       }
     }
-    GramSum            sum(m);
-    Eigen::MatrixXf    part(size[0], m);
-    std::vector<float> roots(static_cast<std::size_t>(size[0]));
+    GramSum                            sum(m);
+    Eigen::MatrixXf                    part(size[0], m);
+    std::vector<std::pair<int, float>> roots; // of the pixels that count: column, root of the factor
     for (int r = 0; r < size[1]; ++r)
     {
       const std::size_t start = static_cast<std::size_t>(r) * size[0];
+      roots.clear();
       for (int c = 0; c < size[0]; ++c)
       {
         const double a = weights[start + c] * ofBlocks[static_cast<Eigen::Index>(r / block) * blocks[0] + c / block];
-        roots[c] = static_cast<float>(std::sqrt(std::max(0.0, a)));
+        if (a > 0.0)
+        {
+          roots.emplace_back(c, static_cast<float>(std::sqrt(a)));
+        }
       }
-      for (int axis = 0; axis < 2; ++axis)
+      const auto used = static_cast<Eigen::Index>(roots.size());
+      for (int axis = 0; axis < 2 && used > 0; ++axis)
       {
         for (Eigen::Index k = 0; k < m; ++k)
         {
           const float * channel = &channels[static_cast<std::size_t>(k) + 1][axis][start];
-          for (int c = 0; c < size[0]; ++c)
+          for (Eigen::Index i = 0; i < used; ++i)
           {
-            part(c, k) = roots[c] * channel[c];
+            const auto & [column, root] = roots[static_cast<std::size_t>(i)];
+            part(i, k) = root * channel[column];
           }
         }
-        sum.Add(part, size[0]);
+        sum.Add(part, used);
       }
     }
     return sum.Get();

@@ -133,8 +133,14 @@ TEST(GradientOrientation, GradientAgreesWithDifferences)
   {
     const GradientOrientation metric(Target(1), 1.0, threshold);
     const Image               image = Waves(2);
-    std::vector<Image>        images{ image, Waves(3), Waves(4), Waves(1) };
-    const MetricValue         value = metric.EvaluateDerivatives(PointersTo(images));
+    // The last two change the root mean square of the radiograph's gradient.
+    std::vector<Image> images{ image, Waves(3), Waves(1), Waves(2) };
+    for (std::size_t i = 0; i < image.size(); ++i)
+    {
+      images[2][i] += image[i];
+      images[3][i] *= 0.1f * static_cast<float>(i % Columns);
+    }
+    const MetricValue value = metric.EvaluateDerivatives(PointersTo(images));
     EXPECT_DOUBLE_EQ(value.cost, metric.Evaluate(image.data()));
     for (int k = 0; k < 3; ++k)
     {
@@ -213,6 +219,7 @@ TEST(GradientOrientation, RefusesWhatTellsNothing)
   EXPECT_THROW(GradientOrientation(notFinite, 1.0), std::invalid_argument);
   target.weights.assign(target.values.size(), 0.0f);
   EXPECT_THROW(GradientOrientation(target, 1.0), std::invalid_argument);
+  target = Target(1);
   target.values.pop_back();
   EXPECT_THROW(GradientOrientation(target, 1.0), std::invalid_argument);
 }
