@@ -38,7 +38,7 @@ TESTS = {"Core": ["Core", "Tiling", "Quality", "Density", "Simplification", "Fil
          "Radiograph": ["Radiograph", "Filter", "Integration"],
          "Atlas": ["Atlas", "Filter"],
          "Phantom": ["Phantom", "Filter", "Integration"],
-         "Evaluation": ["Integration"]}
+         "Evaluation": ["Evaluation", "Integration"]}
 
 # A fault may ask for memory without end.
 MEMORY = 8 << 30
