@@ -48,6 +48,9 @@ void
 AddSampleCommand(CLI::App & app, Action & action);
 void
 AddRegisterCommand(CLI::App & app, Action & action);
+/** To the group `register`. */
+void
+AddRegisterDeformCommand(CLI::App & group, Action & action);
 void
 AddValidateCommand(CLI::App & app, Action & action);
 void

@@ -48,6 +48,12 @@ Specimen::Specimen()
   }
   other = Mesh::New();
   other->SetArrays(std::move(arrays));
+
+  auto estimator = StatisticalModelEstimator<>::New();
+  estimator->AddSubject("one", pipeline.GetFit()->GetOutput());
+  estimator->AddSubject("two", other);
+  estimator->Update();
+  atlas = estimator->GetOutput();
 }
 
 const Specimen &

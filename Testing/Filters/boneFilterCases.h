@@ -9,6 +9,7 @@
 #include "boneBuildPipeline.h"
 #include "boneDRRAdjointFilter.h"
 #include "boneDRRDerivativeImageFilter.h"
+#include "boneDeformableRadiographRegistration.h"
 #include "boneDensityCalibrationFilter.h"
 #include "boneDensityImageFilter.h"
 #include "boneIntensityImageFilter.h"
@@ -34,13 +35,14 @@ struct Specimen
   using Phantom = PhantomImageSource<CTImage>;
 
   Specimen();
-  Phantom::Pointer      phantom;
-  BuildPipeline         pipeline{ 2 };
-  XRayGeometry::Pointer geometry;
-  Mesh::Pointer         other; ///< the same mesh, stretched
-  CTImage::Pointer      ct;
-  CTImage::Pointer      intensities; ///< of the radiograph's size, none negative
-  LabelImage::Pointer   labels;
+  Phantom::Pointer          phantom;
+  BuildPipeline             pipeline{ 2 };
+  XRayGeometry::Pointer     geometry;
+  Mesh::Pointer             other; ///< the same mesh, stretched
+  StatisticalModel::Pointer atlas; ///< of the two
+  CTImage::Pointer          ct;
+  CTImage::Pointer          intensities; ///< of the radiograph's size, none negative
+  LabelImage::Pointer       labels;
 
   static const Specimen &
   Get();
@@ -192,6 +194,22 @@ BONE_CASE(RigidCase, RigidRadiographRegistration<Mesh>, "Model", true, BONE_RIGI
   f.SetPixels(64);
   f.SetSearchPixels(32);
 });
+BONE_CASE(DeformableCase,
+          DeformableRadiographRegistration<Mesh>,
+          "Model",
+          true,
+          BONE_DEFORMABLE_RADIOGRAPH_PARAMETERS,
+          {
+            f.SetModel(missing ? nullptr : s.atlas.GetPointer());
+            f.SetView(0, s.pipeline.GetRadiograph(0)->GetOutput(), s.geometry);
+            f.SetTranslationDeviation(2.0);
+            f.SetRotationDeviation(2.0);
+            f.SetSmoothModes(3);
+            f.SetPopulation(8);
+            f.SetPixels(64);
+            f.SetSearchPixels(32);
+            f.SetIterations(2);
+          });
 BONE_CASE(EstimatorCase, StatisticalModelEstimator<>, "TrainingSet", false, BONE_STATISTICAL_MODEL_PARAMETERS, {
   f.RemoveSubjects();
   if (!missing)

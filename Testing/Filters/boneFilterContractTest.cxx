@@ -243,6 +243,7 @@ using Cases = testing::Types<PhantomCase,
                              RegistrationCase,
                              PreprocessCase,
                              RigidCase,
+                             DeformableCase,
                              EstimatorCase>;
 TYPED_TEST_SUITE(Filter, Cases, );
 

@@ -4,6 +4,7 @@
 #ifndef boneRegistrationReport_h
 #define boneRegistrationReport_h
 
+#include "boneDeformableRegistration.h"
 #include "boneDensityMesh.h"
 #include "boneImageIO.h"
 #include "boneRigidRegistration.h"
@@ -17,6 +18,18 @@ namespace bone
  * degrees), `cost`, `views` (the cost of each) and `searches`. */
 nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result);
+
+/** The same of a deformable registration, `covariance` and `standardDeviations` being the pose's alone; without
+ * `searches`, and with `coefficients` (`shape`, `smooth` and `density`, in standard deviations), `pointDeviation`
+ * (`mean` and `largest` standard deviation of a point's position, mm) and `precision` (by which the cost counts against
+ * the prior). */
+nlohmann::json
+ReportRegistration(const DeformableRegistrationResult & result);
+
+/** The covariance of a deformable registration's pose as RigidRegistrationResult has it: of translation (mm) and
+ * rotation vector (radians) about the centre, along the geometry's axes. */
+Eigen::Matrix<double, 6, 6>
+PoseCovariance(const DeformableRegistrationResult & result);
 
 /** A picture of the X-ray with the outline of the model in its pose, and of what is left of the X-ray where the
  * model's radiograph is subtracted, times the factor that leaves least: the bone is gone where pose and density are

@@ -7,8 +7,6 @@
 #include "boneMeshRadiograph.h"
 #include "boneRigidRadiographRegistration.h"
 
-#include <itkImageRegionConstIterator.h>
-
 namespace bone
 {
 template <typename TMesh, typename TImage>
@@ -21,73 +19,10 @@ RigidRadiographRegistration<TMesh, TImage>::RigidRadiographRegistration()
 
 template <typename TMesh, typename TImage>
 void
-RigidRadiographRegistration<TMesh, TImage>::SetView(unsigned int         view,
-                                                    const TImage *       radiograph,
-                                                    const XRayGeometry * geometry,
-                                                    const TImage *       weights)
-{
-  this->ProcessObject::SetInput(NameOf("Radiograph", view), const_cast<TImage *>(radiograph));
-  this->ProcessObject::SetInput(NameOf("Geometry", view), const_cast<XRayGeometry *>(geometry));
-  this->ProcessObject::SetInput(NameOf("Weights", view), const_cast<TImage *>(weights));
-}
-
-template <typename TMesh, typename TImage>
-unsigned int
-RigidRadiographRegistration<TMesh, TImage>::GetNumberOfViews() const
-{
-  unsigned int views = 0;
-  while (this->GetOfView<TImage>("Radiograph", views) != nullptr ||
-         this->GetOfView<XRayGeometry>("Geometry", views) != nullptr)
-  {
-    ++views;
-  }
-  return views;
-}
-
-template <typename TMesh, typename TImage>
-void
 RigidRadiographRegistration<TMesh, TImage>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
   this->VerifyParameters();
-  if (this->GetNumberOfViews() == 0)
-  {
-    itkExceptionMacro("There is no X-ray: set view 0, an image and its geometry.");
-  }
-  for (unsigned int v = 0; v < this->GetNumberOfViews(); ++v)
-  {
-    if (this->GetOfView<TImage>("Radiograph", v) == nullptr || this->GetOfView<XRayGeometry>("Geometry", v) == nullptr)
-    {
-      itkExceptionMacro("View " << v + 1 << " needs both an image and a geometry.");
-    }
-  }
-}
-
-template <typename TMesh, typename TImage>
-std::vector<float>
-RigidRadiographRegistration<TMesh, TImage>::CopyPixels(const char * what, unsigned int view) const
-{
-  const TImage * image = this->GetOfView<TImage>(what, view);
-  if (image == nullptr)
-  {
-    return {};
-  }
-  const auto   region = image->GetBufferedRegion();
-  const auto & size = this->GetOfView<XRayGeometry>("Geometry", view)->GetView().size;
-  if (region.GetSize(0) != static_cast<itk::SizeValueType>(size[0]) ||
-      region.GetSize(1) != static_cast<itk::SizeValueType>(size[1]) || region.GetSize(2) != 1)
-  {
-    itkExceptionMacro("View " << view + 1 << ": the input '" << NameOf(what, view) << "' has " << region.GetSize(0)
-                              << " x " << region.GetSize(1) << " x " << region.GetSize(2) << " pixels, its geometry "
-                              << size[0] << " x " << size[1] << " x 1.");
-  }
-  std::vector<float> pixels;
-  pixels.reserve(region.GetNumberOfPixels());
-  for (itk::ImageRegionConstIterator<TImage> it(image, region); !it.IsAtEnd(); ++it)
-  {
-    pixels.push_back(static_cast<float>(it.Get()));
-  }
-  return pixels;
 }
 
 template <typename TMesh, typename TImage>
@@ -110,35 +45,17 @@ RigidRadiographRegistration<TMesh, TImage>::GenerateData()
   {
     itkExceptionMacro("The input 'Model' has no level.");
   }
-  std::vector<RadiographView> views;
-  for (unsigned int v = 0; v < this->GetNumberOfViews(); ++v)
-  {
-    views.push_back({ this->GetOfView<XRayGeometry>("Geometry", v)->GetView(),
-                      this->CopyPixels("Radiograph", v),
-                      this->CopyPixels("Weights", v) });
-    for (std::size_t i = 0; i < views[v].values.size(); ++i)
-    {
-      const float weight = views[v].weights.empty() ? 1.0f : views[v].weights[i];
-      if (!(weight >= 0.0f && weight <= 1.0f) || (weight > 0.0f && !std::isfinite(views[v].values[i])))
-      {
-        itkExceptionMacro("View " << v + 1 << ": pixel " << i % views[v].view.size[0] << ' '
-                                  << i / views[v].view.size[0]
-                                  << " is not finite, or its weight is not from 0 to 1: give it the weight 0.");
-      }
-    }
-  }
-  const TransformType * initial = this->GetInitialTransform();
+  const std::vector<RadiographView> views = this->CopyViews();
   try
   {
     m_Result = RegisterRigid(levels,
                              views,
-                             initial != nullptr ? RigidPose::FromTransform(*initial) : RigidPose(),
+                             this->GetInitialPose(),
                              this->GetParameters(),
                              Execution(this),
                              [this](const RigidPose & pose, double cost) {
                                m_CurrentPose = pose;
-                               m_CurrentCost = cost;
-                               this->InvokeEvent(itk::IterationEvent());
+                               this->TellStep(cost);
                              });
   }
   catch (const std::invalid_argument & error)
@@ -156,7 +73,6 @@ RigidRadiographRegistration<TMesh, TImage>::PrintSelf(std::ostream & os, itk::In
   PrintParameters(os, indent, this->GetParameters());
   os << indent << "Quality: " << ParameterText(m_Result.quality) << '\n';
   os << indent << "Distinctness: " << m_Result.distinctness << '\n';
-  os << indent << "CurrentCost: " << m_CurrentCost << '\n';
   os << indent << "CurrentPose: " << m_CurrentPose.translation.transpose() << '\n';
 }
 } // namespace bone

@@ -70,6 +70,31 @@ DrawOutline(Canvas & canvas, const XRayGeometry::View & view, const std::vector<
   }
 }
 
+/** What the results of all registrations have. */
+template <typename TResult>
+nlohmann::json
+ReportPose(const TResult & result, const Eigen::Matrix<double, 6, 6> & covariance)
+{
+  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
+  transform.topLeftCorner<3, 3>() = result.pose.rotation;
+  transform.topRightCorner<3, 1>() = result.pose.Apply(Vector3::Zero());
+  std::vector<double> deviations;
+  for (int k = 0; k < 6; ++k)
+  {
+    deviations.push_back(std::sqrt(std::max(0.0, covariance(k, k))) * (k < 3 ? 1.0 : 180.0 / std::acos(-1.0)));
+  }
+  const auto & centre = result.pose.centre;
+  return { { "converged", result.converged },
+           { "quality", ParameterText(result.quality) },
+           { "distinctness", result.distinctness },
+           { "transform", RowsOf(transform) },
+           { "centre", { centre.x(), centre.y(), centre.z() } },
+           { "covariance", RowsOf(covariance) },
+           { "standardDeviations", deviations },
+           { "cost", result.cost },
+           { "views", result.costs } };
+}
+
 /** The panel magnified, and with it its rows' true height. */
 Panel
 Magnify(const std::vector<float> & values, const XRayGeometry::View & view, int factor)
@@ -90,25 +115,41 @@ Magnify(const std::vector<float> & values, const XRayGeometry::View & view, int 
 nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result)
 {
-  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  transform.topLeftCorner<3, 3>() = result.pose.rotation;
-  transform.topRightCorner<3, 1>() = result.pose.Apply(Vector3::Zero());
-  std::vector<double> deviations;
-  for (int k = 0; k < 6; ++k)
+  nlohmann::json report = ReportPose(result, result.covariance);
+  report["searches"] = result.searches;
+  return report;
+}
+
+Eigen::Matrix<double, 6, 6>
+PoseCovariance(const DeformableRegistrationResult & result)
+{
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = result.pose.rotation;
+  turn.bottomRightCorner<3, 3>() = result.pose.rotation;
+  return turn * result.covariance.topLeftCorner<6, 6>() * turn.transpose();
+}
+
+nlohmann::json
+ReportRegistration(const DeformableRegistrationResult & result)
+{
+  nlohmann::json report = ReportPose(result, PoseCovariance(result));
+  const auto     part = [&result](Eigen::Index first, Eigen::Index count) {
+    const double * begin = result.coefficients.data() + first;
+    return std::vector<double>(begin, begin + count);
+  };
+  report["coefficients"] = { { "shape", part(0, result.shapeModes) },
+                             { "smooth", part(result.shapeModes, result.smoothModes) },
+                             { "density", part(result.shapeModes + result.smoothModes, result.densityModes) } };
+  double sum = 0.0, largest = 0.0;
+  for (const Vector3 & deviation : result.pointDeviations)
   {
-    deviations.push_back(std::sqrt(std::max(0.0, result.covariance(k, k))) * (k < 3 ? 1.0 : 180.0 / std::acos(-1.0)));
+    sum += deviation.norm();
+    largest = std::max(largest, deviation.norm());
   }
-  const auto & centre = result.pose.centre;
-  return { { "converged", result.converged },
-           { "quality", ParameterText(result.quality) },
-           { "distinctness", result.distinctness },
-           { "transform", RowsOf(transform) },
-           { "centre", { centre.x(), centre.y(), centre.z() } },
-           { "covariance", RowsOf(result.covariance) },
-           { "standardDeviations", deviations },
-           { "cost", result.cost },
-           { "views", result.costs },
-           { "searches", result.searches } };
+  const double points = static_cast<double>(std::max<std::size_t>(1, result.pointDeviations.size()));
+  report["pointDeviation"] = { { "mean", sum / points }, { "largest", largest } };
+  report["precision"] = result.precision;
+  return report;
 }
 
 PictureImage::Pointer

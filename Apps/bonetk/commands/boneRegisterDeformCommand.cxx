@@ -1,0 +1,143 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneOptions.h"
+#include "boneParameterOptions.h"
+#include "boneRegistrationViews.h"
+
+#include "boneDeformableRadiographRegistration.h"
+
+#include "boneAtomicFile.h"
+#include "boneIOError.h"
+#include "boneMeshIO.h"
+#include "boneModelIO.h"
+#include "boneRegistrationReport.h"
+#include "boneTransformIO.h"
+
+#include <cstdio>
+
+namespace bone
+{
+namespace
+{
+struct RegisterDeformOptions
+{
+  std::string                    model;
+  RegistrationViewOptions        views;
+  DeformableRadiographParameters deformable;
+  std::string                    output;
+};
+
+StatisticalModel::Pointer
+ReadAtlasWithDensity(const std::string & path)
+{
+  auto atlas = ReadStatisticalModel(path);
+  if (!atlas->GetContent().mean.HasDensity())
+  {
+    throw IOError(path, "has no density, which X-rays show: train it with meshes that have one (bonetk fit, build)");
+  }
+  return atlas;
+}
+
+/** Coefficients in standard deviations, the first few of them. */
+std::string
+LeadingCoefficients(const nlohmann::json & coefficients)
+{
+  constexpr std::size_t most = 6;
+  std::string           text;
+  for (std::size_t k = 0; k < std::min(most, coefficients.size()); ++k)
+  {
+    char number[32];
+    std::snprintf(number, sizeof(number), " %.2f", coefficients[k].get<double>());
+    text += number;
+  }
+  return coefficients.empty() ? " none" : text + (coefficients.size() > most ? " ..." : "");
+}
+
+void
+PrintDeformation(const std::string & name, const nlohmann::json & report, Session & session)
+{
+  char line[300];
+  std::snprintf(line,
+                sizeof(line),
+                "%s: %s, cost %.3f, points' standard deviation %.2f mm (largest %.2f mm)\n",
+                name.c_str(),
+                report["quality"].get<std::string>().c_str(),
+                report["cost"].get<double>(),
+                report["pointDeviation"]["mean"].get<double>(),
+                report["pointDeviation"]["largest"].get<double>());
+  session.Print(line + ("  shape" + LeadingCoefficients(report["coefficients"]["shape"])) + "\n  density" +
+                LeadingCoefficients(report["coefficients"]["density"]) + "\n");
+}
+
+void
+VerifyDeformOptions(const RegisterDeformOptions & options)
+{
+  VerifyViewOptions(options.views);
+  if (options.views.xrays.size() == 1 && options.deformable.translationDeviation == 0.0)
+  {
+    throw UsageError(
+      "one X-ray cannot tell size from depth: give --translation-deviation and --rotation-deviation, how "
+      "well the start is known, or a second X-ray");
+  }
+  const std::string &     output = options.output;
+  std::vector<OutputFile> files{ { output + ".vtu", {} }, { output + ".tfm", {} }, { output + ".json", {} } };
+  for (std::size_t v = 0; v < options.views.xrays.size(); ++v)
+  {
+    files.push_back({ PictureNameOf(output, v), {} });
+  }
+  VerifyOutputs(files);
+}
+
+void
+RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
+{
+  const auto start = std::chrono::steady_clock::now();
+  VerifyDeformOptions(options);
+  DeformableRadiographParameters parameters = options.deformable;
+  ApplySearch(options.views, parameters);
+  const auto atlas = ReadAtlasWithDensity(options.model);
+  const auto views = ReadRegistrationViews(options.views, session);
+  auto       registration = DeformableRadiographRegistration<DensityMesh<double>, CTImage>::New();
+  registration->SetModel(atlas);
+  registration->SetParameters(parameters);
+  ConnectViews(options.views, views, *registration, session);
+  session.Watch(registration, "register");
+  registration->Update();
+
+  const auto & result = registration->GetResult();
+  WriteMeshArrays(result.mesh, options.output + ".vtu");
+  WriteRigidTransform(*registration->GetTransform(), options.output + ".tfm");
+  nlohmann::json report = ReportRegistration(result);
+  report["model"] = options.model;
+  report["xrays"] = options.views.xrays;
+  report["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  WriteFileAtomically(options.output + ".json", report.dump(1) + "\n");
+  WriteRegistrationPictures(views, result.mesh, RigidPose(), options.output);
+  PrintDeformation(options.model, report, session);
+  if (result.quality != RegistrationQuality::Ok)
+  {
+    session.WarnAlways(options.model + ": the bone found is " +
+                       (result.quality == RegistrationQuality::Failed
+                          ? "likely wrong: give a better --initial, landmarks, or a larger --search"
+                          : "not distinct: look at the pictures"));
+  }
+}
+} // namespace
+
+void
+AddRegisterDeformCommand(CLI::App & group, Action & action)
+{
+  auto   options = std::make_shared<RegisterDeformOptions>();
+  auto * command = group.add_subcommand("deform",
+                                        "Pose, shape and density of an atlas' bone in X-rays; writes OUT.vtu, OUT.tfm, "
+                                        "OUT.json and pictures OUT_V1.png, ...");
+  command->add_option("model", options->model, "Statistical model with density (.h5)")->required();
+  AddRegistrationViewOptions(command, options->views, "10 10");
+  AddParameterOptions(command, options->deformable);
+  command->add_option("-o,--output", options->output, "Beginning of the names of the files to write")->required();
+  command->callback(
+    [options, &action] { action = [options](Session & session) { RunRegisterDeform(*options, session); }; });
+}
+} // namespace bone

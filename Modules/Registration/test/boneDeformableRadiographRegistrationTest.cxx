@@ -1,0 +1,278 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneDeformableRadiographRegistration.h"
+
+#include "boneDeformableTestAtlas.h"
+
+#include <itkCommand.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace
+{
+using namespace bone;
+using namespace bone::test;
+using Image = itk::Image<float, 3>;
+using Registration = DeformableRadiographRegistration<>;
+
+const RigidPose       Truth = PoseOf(4, -3, 3, 0.08, 0.06, -0.07);
+const Eigen::Vector2d TrueShape(1.0, -0.8);
+constexpr double      TrueDensity = 0.7;
+
+StatisticalModel::Pointer
+Model(StatisticalModelContent content = Atlas())
+{
+  auto model = StatisticalModel::New();
+  model->SetContent(std::move(content));
+  return model;
+}
+
+/** The true bone in the space of the atlas. */
+MeshArrays
+TrueBone()
+{
+  return Model()->Synthesize(TrueShape, Eigen::VectorXd::Constant(1, TrueDensity));
+}
+
+/** Without smooth modes: all of the truth is in the atlas. */
+DeformableRadiographParameters
+Parameters()
+{
+  DeformableRadiographParameters parameters;
+  parameters.smoothModes = 0;
+  parameters.population = 30;
+  parameters.pixels = 96;
+  parameters.searchPixels = 48;
+  return parameters;
+}
+
+Image::Pointer
+ToImage(const std::vector<float> & values, const XRayGeometry::View & view)
+{
+  auto image = Image::New();
+  image->SetRegions(itk::Size<3>{
+    { static_cast<itk::SizeValueType>(view.size[0]), static_cast<itk::SizeValueType>(view.size[1]), 1 } });
+  image->Allocate();
+  std::copy(values.begin(), values.end(), image->GetBufferPointer());
+  return image;
+}
+
+Registration::Pointer
+MakeRegistration(unsigned int views = 2)
+{
+  auto       registration = Registration::New();
+  const auto xrays = TwoXRays(TrueBone(), Truth);
+  registration->SetModel(Model());
+  for (unsigned int v = 0; v < views; ++v)
+  {
+    auto geometry = XRayGeometry::New();
+    geometry->SetView(xrays[v].view);
+    registration->SetView(v, ToImage(xrays[v].values, xrays[v].view), geometry);
+  }
+  registration->SetParameters(Parameters());
+  return registration;
+}
+
+std::string
+ErrorOf(Registration * registration)
+{
+  try
+  {
+    registration->Update();
+  }
+  catch (const itk::ExceptionObject & error)
+  {
+    return error.GetDescription();
+  }
+  return "";
+}
+
+/** The mean distance of points of the same number, mm. */
+double
+MeanDistance(const std::vector<Vector3> & a, const std::vector<Vector3> & b)
+{
+  double sum = 0.0;
+  for (std::size_t p = 0; p < a.size(); ++p)
+  {
+    sum += (a[p] - b[p]).norm();
+  }
+  return sum / static_cast<double>(a.size());
+}
+
+std::vector<Vector3>
+Moved(std::vector<Vector3> points, const RigidPose & pose)
+{
+  for (Vector3 & x : points)
+  {
+    x = pose.Apply(x);
+  }
+  return points;
+}
+
+TEST(DeformableRadiographRegistration, FindsPoseShapeAndDensity)
+{
+  auto registration = MakeRegistration();
+  registration->Update();
+  const auto & result = registration->GetResult();
+  EXPECT_EQ(result.shapeModes, 2);
+  EXPECT_EQ(result.smoothModes, 0);
+  EXPECT_EQ(result.densityModes, 1);
+  ASSERT_EQ(result.coefficients.size(), 3);
+  EXPECT_NEAR(result.coefficients[0], TrueShape[0], 0.15);
+  EXPECT_NEAR(result.coefficients[1], TrueShape[1], 0.15);
+  EXPECT_NEAR(result.coefficients[2], TrueDensity, 0.25);
+  EXPECT_LT(LargestDistance(SolidBody(8), result.pose, Truth), 0.5);
+  EXPECT_EQ(result.covariance.rows(), 9);
+
+  const MeshArrays found = registration->GetOutput()->GetArrays();
+  EXPECT_LT(MeanDistance(found.points, Moved(TrueBone().points, Truth)), 0.2);
+  EXPECT_EQ(found.coefficients.size(), TrueBone().coefficients.size());
+  ASSERT_EQ(result.pointDeviations.size(), found.points.size());
+  for (const Vector3 & deviation : result.pointDeviations)
+  {
+    EXPECT_TRUE(deviation.minCoeff() > 0.0 && deviation.maxCoeff() < 10.0) << deviation.transpose();
+  }
+  const auto moved = registration->GetTransform()->TransformPoint(itk::Point<double, 3>(Vector3(1, 2, 3).data()));
+  EXPECT_LT((Vector3(moved[0], moved[1], moved[2]) - result.pose.Apply({ 1, 2, 3 })).norm(), 1e-9);
+}
+
+TEST(DeformableRadiographRegistration, MovesWithViewsAndStart)
+{
+  auto straight = MakeRegistration();
+  straight->SetSearchTranslation(0.0);
+  straight->SetSearchRotation(0.0);
+  straight->SetInitialTransform(Truth.ToTransform());
+  straight->Update();
+
+  // All of the geometry moved by `motion`: the views as seen from a space that is moved the other way.
+  const RigidPose motion = PoseOf(40, -25, 60, 0.7, -0.4, 1.1);
+  RigidPose       back;
+  back.rotation = motion.rotation.transpose();
+  back.translation = motion.ApplyInverse(Vector3::Zero());
+  auto       turned = MakeRegistration();
+  const auto xrays = TwoXRays(TrueBone(), Truth);
+  for (unsigned int v = 0; v < 2; ++v)
+  {
+    auto geometry = XRayGeometry::New();
+    geometry->SetView(back.ToModelSpace(xrays[v].view));
+    turned->SetView(v, ToImage(xrays[v].values, xrays[v].view), geometry);
+  }
+  RigidPose initial;
+  initial.rotation = motion.rotation * Truth.rotation;
+  initial.translation = motion.Apply(Truth.Apply(Vector3::Zero()));
+  turned->SetSearchTranslation(0.0);
+  turned->SetSearchRotation(0.0);
+  turned->SetInitialTransform(initial.ToTransform());
+  turned->Update();
+  EXPECT_LT(
+    MeanDistance(turned->GetOutput()->GetArrays().points, Moved(straight->GetOutput()->GetArrays().points, motion)),
+    0.02);
+  EXPECT_LT((turned->GetResult().coefficients - straight->GetResult().coefficients).norm(), 0.02);
+}
+
+TEST(DeformableRadiographRegistration, SameResultForAnyNumberOfThreads)
+{
+  MeshArrays meshes[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    auto registration = MakeRegistration();
+    registration->SetSmoothModes(6);
+    registration->SetNumberOfWorkUnits(i == 0 ? 1 : 2);
+    registration->Update();
+    meshes[i] = registration->GetOutput()->GetArrays();
+  }
+  EXPECT_EQ(meshes[0].points, meshes[1].points);
+  EXPECT_EQ(meshes[0].coefficients, meshes[1].coefficients);
+}
+
+TEST(DeformableRadiographRegistration, OneViewNeedsAPrior)
+{
+  auto registration = MakeRegistration(1);
+  EXPECT_THAT(ErrorOf(registration), ::testing::HasSubstr("TranslationDeviation"));
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  registration->SetTranslationDeviation(2.0);
+  registration->SetRotationDeviation(2.0);
+  registration->SetInitialTransform(Truth.ToTransform());
+  registration->Update();
+  const auto & covariance = registration->GetResult().covariance;
+  // The view looks along y. What it does not tell is as the prior has it.
+  EXPECT_GT(covariance(1, 1), 4.0 * covariance(0, 0));
+  EXPECT_LT(covariance(1, 1), 4.0 * 1.01);
+}
+
+TEST(DeformableRadiographRegistration, TetrahedraThatCannotBeRepairedAreRefused)
+{
+  // Across the whole body: what no mode puts right.
+  auto atlas = Atlas();
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    atlas.mean.points[static_cast<std::size_t>(atlas.mean.tetrahedra.front()[i])] += 60.0 * Vector3::Unit(i % 3);
+  }
+  atlas.shape.mean = StackPoints(atlas.mean.points);
+  auto registration = MakeRegistration();
+  registration->SetModel(Model(std::move(atlas)));
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  EXPECT_THAT(ErrorOf(registration), ::testing::HasSubstr("cannot be repaired"));
+}
+
+TEST(DeformableRadiographRegistration, IsLazyAndTellsEachStep)
+{
+  auto   registration = MakeRegistration();
+  int    steps = 0;
+  double last = 0.0;
+  auto   command = itk::FunctionCommand::New();
+  command->SetCallback([&](const itk::EventObject &) {
+    ++steps;
+    last = registration->GetCurrentCost();
+    EXPECT_EQ(registration->GetCurrentCoefficients().size(), 3);
+  });
+  registration->AddObserver(itk::IterationEvent(), command);
+  registration->Update();
+  EXPECT_GT(steps, 2);
+  EXPECT_NEAR(last, registration->GetResult().cost, 1e-5);
+  const int before = steps;
+  registration->Update();
+  EXPECT_EQ(steps, before);
+  registration->SetIterations(registration->GetIterations() + 1);
+  registration->Update();
+  EXPECT_GT(steps, before);
+}
+
+TEST(DeformableRadiographRegistration, RefusesWhatItCannotUse)
+{
+  using ::testing::HasSubstr;
+  EXPECT_THAT(ErrorOf(Registration::New()), HasSubstr("Model"));
+
+  auto noView = Registration::New();
+  noView->SetModel(Model());
+  EXPECT_THAT(ErrorOf(noView), HasSubstr("There is no X-ray"));
+
+  auto noGeometry = MakeRegistration();
+  noGeometry->SetView(1, ToImage(std::vector<float>(96 * 96), ViewOf({ 0, 1, 0 })), nullptr);
+  EXPECT_THAT(ErrorOf(noGeometry), HasSubstr("View 2 needs both"));
+
+  auto constant = MakeRegistration();
+  auto geometry = XRayGeometry::New();
+  geometry->SetView(ViewOf({ 1, 0, 0 }));
+  constant->SetView(1, ToImage(std::vector<float>(96 * 96, 3.0f), ViewOf({ 1, 0, 0 })), geometry);
+  EXPECT_THAT(ErrorOf(constant), HasSubstr("View 2: "));
+
+  auto noDensity = MakeRegistration();
+  auto atlas = Atlas();
+  atlas.mean.degree.clear();
+  atlas.mean.coefficients.clear();
+  atlas.mean.maximumDegree = -1;
+  atlas.density = PrincipalModes();
+  atlas.densityScores.resize(0, 0);
+  noDensity->SetModel(Model(std::move(atlas)));
+  EXPECT_THAT(ErrorOf(noDensity), HasSubstr("The input 'Model'"));
+
+  auto range = MakeRegistration();
+  range->SetPatch(2);
+  EXPECT_THAT(ErrorOf(range), HasSubstr("Patch is 2"));
+}
+} // namespace
