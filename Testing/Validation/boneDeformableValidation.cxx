@@ -232,7 +232,7 @@ Run(const Trials & trials)
     row["regions"] = nlohmann::json::array();
     const auto labels = ReadLabels(trials.cts + "/" + name + "_l.nii.gz");
     const auto scan = ReadCT(trials.cts + "/" + name + ".mha");
-    for (const RegionDensity & region : result.regions)
+    for (const RegionEstimate & region : result.regions)
     {
       double volume = 0.0, mass = 0.0;
       for (std::size_t i = 0; i < labels->GetBufferedRegion().GetNumberOfPixels(); ++i)

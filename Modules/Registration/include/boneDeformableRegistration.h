@@ -14,9 +14,9 @@
 
 namespace bone
 {
-/** \struct RegionDensity
+/** \struct RegionEstimate
  * \brief What a registration says of one region of the bone, with standard deviations. */
-struct RegionDensity
+struct RegionEstimate
 {
   int    region{ 0 };
   double volume{ 0.0 }; ///< mm^3
@@ -42,7 +42,7 @@ struct DeformableRegistrationResult
   Eigen::MatrixXd      covariance;
   std::vector<Vector3> pointDeviations; ///< of each point along the geometry's axes, mm
 
-  std::vector<RegionDensity> regions; ///< and last, as region -1, the whole bone
+  std::vector<RegionEstimate> regions; ///< and last, as region -1, the whole bone
 
   double              cost{ 0.0 }; ///< of the gradients
   std::vector<double> costs;       ///< of each view

@@ -78,9 +78,14 @@ AddShare(DeformableTerm & total, const MetricValue & value, double share)
 double
 DeformableTerm::EstimatePrecision() const
 {
-  constexpr double      damping = 1e-2;
+  constexpr double damping = 1e-2;
+  constexpr double least = 1e-9; // of the largest curvature: what the images do not show counts nothing
+  if (!(hessian.diagonal().maxCoeff() > 0.0))
+  {
+    return 0.0;
+  }
   const Eigen::VectorXd scale =
-    hessian.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+    hessian.diagonal().cwiseMax(least * hessian.diagonal().maxCoeff()).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
   Eigen::MatrixXd       damped = scaled;
   damped.diagonal().array() += damping;

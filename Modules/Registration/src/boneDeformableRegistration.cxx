@@ -42,11 +42,6 @@ public:
     , m_Model(atlas, parameters)
     , m_Initial(initial.About(CentreOf(atlas.mean.points)))
   {
-    for (const Vector3 & x : m_Model.mean.points)
-    {
-      m_Radius += (x - m_Initial.centre).squaredNorm();
-    }
-    m_Radius = std::sqrt(2.0 / 3.0 * m_Radius / static_cast<double>(m_Model.mean.points.size()));
     this->MakePrior();
   }
 
@@ -61,14 +56,17 @@ public:
       resolutions.push_back(pixels);
     }
     resolutions.push_back(m_P.pixels);
-    for (const int pixels : resolutions)
+    for (std::size_t i = 0; i < resolutions.size(); ++i)
     {
-      DeformableCost cost(m_Model, m_Views, m_P, pixels);
-      this->Descend(cost, state, result, execution.Silent());
-      if (pixels == m_P.pixels && m_P.intensities)
+      const auto      share = 0.6 / static_cast<double>(resolutions.size());
+      const Execution part = execution.Part(0.3 + share * static_cast<double>(i), 0.3 + share * (i + 1.0));
+      const bool      last = i + 1 == resolutions.size() && m_P.intensities;
+      DeformableCost  cost(m_Model, m_Views, m_P, resolutions[i]);
+      this->Descend(cost, state, result, part.Part(0.0, last ? 0.5 : 1.0));
+      if (last)
       {
-        cost.UseIntensities(state, execution.Silent());
-        this->Descend(cost, state, result, execution.Silent());
+        cost.UseIntensities(state, part.Silent());
+        this->Descend(cost, state, result, part.Part(0.5, 1.0));
       }
     }
     result.pose = state.pose;
@@ -77,6 +75,7 @@ public:
     result.smoothModes = m_Model.smoothModes;
     result.densityModes = m_Model.densityModes;
     this->Finish(result);
+    this->Judge(result, execution.Part(0.9, 1.0));
     execution.Report(1.0);
     return result;
   }
@@ -202,7 +201,8 @@ private:
           const Execution &              execution) const
   {
     constexpr double least = 0.05; // of the logarithm of the posterior
-    auto             values = cost.Evaluate(at, execution);
+    const Execution  silent = execution.Silent();
+    auto             values = cost.Evaluate(at, silent);
     double           damping = 1e-3;
     int              refusals = 0;
     result.converged = false;
@@ -213,7 +213,7 @@ private:
       hessian.diagonal() *= 1.0 + damping;
       hessian.diagonal().array() += std::numeric_limits<double>::min();
       const DeformableState next = Moved(at, -hessian.ldlt().solve(posterior.gradient));
-      auto                  there = cost.Evaluate(next, execution);
+      auto                  there = cost.Evaluate(next, silent);
       const double          gain = this->Gain(at, values, next, there, posterior.precisions);
       if (gain > 0.0)
       {
@@ -232,6 +232,7 @@ private:
       {
         m_Observe(at.coefficients, values[0].cost);
       }
+      execution.Report((i + 1.0) / m_P.iterations);
     }
     const Posterior posterior = this->MakePosterior(values, at);
     result.cost = values[0].cost;
@@ -279,8 +280,25 @@ private:
     }
   }
 
+  /** Whether the pose of the bone found is distinct, as of a bone that is known. */
+  void
+  Judge(DeformableRegistrationResult & result, const Execution & execution) const
+  {
+    RigidRadiographParameters rigid;
+    rigid.searchTranslation = rigid.searchRotation = 0.0;
+    rigid.pixels = m_P.pixels;
+    rigid.searchPixels = m_P.pixels;
+    rigid.patch = m_P.patch;
+    rigid.sigma = m_P.sigma;
+    rigid.iterations = 1;
+    const auto judged = RegisterRigid({ result.mesh }, m_Views, RigidPose(), rigid, execution);
+    result.costs = judged.costs;
+    result.quality = judged.quality;
+    result.distinctness = judged.distinctness;
+  }
+
   /** What the regions hold, and the deviations that come of those of the coefficients. */
-  std::vector<RegionDensity>
+  std::vector<RegionEstimate>
   MeasureRegions(const DeformableRegistrationResult & result) const
   {
     constexpr double             step = 0.5;
@@ -295,7 +313,7 @@ private:
         (m_Model.MeasureRegions(result.coefficients + move) - m_Model.MeasureRegions(result.coefficients - move)) /
         (2.0 * step));
     }
-    std::vector<RegionDensity> regions;
+    std::vector<RegionEstimate> regions;
     for (Eigen::Index r = 0; r < at.rows(); ++r)
     {
       std::array<double, 3> deviations{};
@@ -322,7 +340,6 @@ private:
   const std::function<void(const Eigen::VectorXd &, double)> & m_Observe;
   DeformableModel                                              m_Model;
   RigidPose                                                    m_Initial;
-  double                                                       m_Radius{ 0.0 };
   Eigen::VectorXd                                              m_Prior;
 };
 } // namespace

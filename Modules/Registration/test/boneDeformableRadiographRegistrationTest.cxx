@@ -125,6 +125,9 @@ TEST(DeformableRadiographRegistration, FindsPoseShapeAndDensity)
   EXPECT_NEAR(result.coefficients[2], TrueDensity, 0.25);
   EXPECT_LT(LargestDistance(SolidBody(8), result.pose, Truth), 0.5);
   EXPECT_EQ(result.covariance.rows(), 9);
+  EXPECT_EQ(result.costs.size(), 2u);
+  EXPECT_EQ(result.quality, RegistrationQuality::Ok);
+  EXPECT_GT(result.precision, 0.0);
 
   const MeshArrays found = registration->GetOutput()->GetArrays();
   EXPECT_LT(MeanDistance(found.points, Moved(TrueBone().points, Truth)), 0.2);

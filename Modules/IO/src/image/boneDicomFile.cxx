@@ -6,6 +6,7 @@
 #include "boneDicomFragments.h"
 #include "boneIOError.h"
 #include "boneImageHeader.h"
+#include "boneRefuse.h"
 
 #include <dcmtk/config/osconfig.h>
 
