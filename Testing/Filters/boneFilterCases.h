@@ -205,6 +205,7 @@ BONE_CASE(DeformableCase,
             f.SetTranslationDeviation(2.0);
             f.SetRotationDeviation(2.0);
             f.SetSmoothModes(3);
+            f.SetSmoothDeviation(1.0);
             f.SetPopulation(8);
             f.SetPixels(64);
             f.SetSearchPixels(32);

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace bone
 {
@@ -75,6 +77,12 @@ DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
   PrincipalModes smooth;
   if (parameters.smoothModes > 0)
   {
+    if (parameters.smoothDeviation == 0.0 && atlas.shapeScores.rows() < 4)
+    {
+      throw std::invalid_argument("The atlas has " + std::to_string(atlas.shapeScores.rows()) +
+                                  " subjects, and what its modes leave of a bone is estimated from four or more: set "
+                                  "SmoothDeviation, or SmoothModes to 0.");
+    }
     const double length = parameters.smoothLength > 0.0 ? parameters.smoothLength : ExtentOf(mean.points) / 12.0;
     smooth = parameters.smoothDeviation > 0.0
                ? SmoothModes(mean.points, parameters.smoothDeviation, length, parameters.smoothModes)

@@ -274,6 +274,13 @@ TEST(DeformableRadiographRegistration, RefusesWhatItCannotUse)
   noDensity->SetModel(Model(std::move(atlas)));
   EXPECT_THAT(ErrorOf(noDensity), HasSubstr("The input 'Model'"));
 
+  auto few = MakeRegistration();
+  auto three = Atlas();
+  three.shapeScores = three.shapeScores.topRows(3).eval();
+  few->SetModel(Model(std::move(three)));
+  few->SetSmoothModes(9);
+  EXPECT_THAT(ErrorOf(few), HasSubstr("set SmoothDeviation"));
+
   auto range = MakeRegistration();
   range->SetPatch(2);
   EXPECT_THAT(ErrorOf(range), HasSubstr("Patch is 2"));

@@ -5,6 +5,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneIOError.h"
+#include "boneRefuse.h"
 #include "boneXmlCheck.h"
 
 #include <vtkCommand.h>
