@@ -174,7 +174,7 @@ ReadRegistrationViews(const RegistrationViewOptions & options, Session & session
     {
       throw IOError(options.xrays[v], ErrorLine(error));
     }
-    views.push_back({ geometry[v], preprocess->GetOutput(), preprocess->GetWeights() });
+    views.push_back({ geometry[v], preprocess->GetOutput(), preprocess->GetWeights(), preprocess->IsMonotoneOnly() });
   }
   return views;
 }

@@ -46,6 +46,7 @@ struct PreparedView
   XRayGeometry::Pointer geometry;
   CTImage::Pointer      integrals;
   CTImage::Pointer      weights;
+  bool                  monotoneOnly{ false }; ///< some rising function of line integrals
 };
 
 /** Adds the options of the views, their preprocessing, landmarks, initial transform and search, whose default reads

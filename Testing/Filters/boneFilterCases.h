@@ -206,6 +206,7 @@ BONE_CASE(DeformableCase,
             f.SetRotationDeviation(2.0);
             f.SetSmoothModes(3);
             f.SetSmoothDeviation(1.0);
+            f.SetIntensities(false); // the radiographs are not of attenuation
             f.SetPopulation(8);
             f.SetPixels(64);
             f.SetSearchPixels(32);

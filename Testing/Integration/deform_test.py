@@ -54,6 +54,19 @@ def view(centre, beam):
             "size": [SIZE, SIZE], "spacing": [spacing, spacing]}
 
 
+# Attenuation per mm and HU, the default of register deform.
+BONE_SLOPE = (0.06047 - 0.02059) / 1600
+
+
+def scale_image(path, factor):
+    """Multiplies the pixels of an uncompressed MetaImage of floats."""
+    with open(path, "rb") as file:
+        content = file.read()
+    begin = content.index(b"ElementDataFile = LOCAL\n") + len(b"ElementDataFile = LOCAL\n")
+    with open(path, "wb") as file:
+        file.write(content[:begin] + (numpy.frombuffer(content[begin:], "<f4") * factor).astype("<f4").tobytes())
+
+
 class Deform(TestCase):
     @classmethod
     def setUpClass(cls):
@@ -84,6 +97,8 @@ class Deform(TestCase):
                             ["drr", "truth.vtu", "--geometry", "views.json", "-o", "x.mha"]):
                 code, _, err = bonetk(*command)
                 assert code == 0, err
+            for name in ("x_V1.mha", "x_V2.mha"):
+                scale_image(name, BONE_SLOPE)
         finally:
             os.chdir(before)
 
@@ -92,7 +107,8 @@ class Deform(TestCase):
         for name in os.listdir(self.common.name):
             os.symlink(os.path.join(self.common.name, name), name)
         self.command = ["register", "deform", "atlas.h5", "--xray", "x_V1.mha", "x_V2.mha", "--geometry", "views.json",
-                        "--pixels", 96, "--search-pixels", 48, "--population", 30, "--smooth-modes", 6]
+                        "--pixels", 96, "--search-pixels", 48, "--population", 30, "--smooth-modes", 6,
+                        "--soft-tissue", 0]
 
     def distance(self, path):
         """How far points lie from where they are, on average, mm."""
@@ -143,6 +159,16 @@ class Deform(TestCase):
     def test_what_is_refused(self):
         self.refuse_usage(*self.command[:6], "--geometry", "one.json", "-o", "r", says="1 views, but there are 2 X-rays")
         self.refuse_usage(*self.command[:6], "--carm", 0, 0, "-o", "r", says="--carm needs")
+        # Density times mm is no attenuation; its gradients will do.
+        for name in ("x_V1.mha", "x_V2.mha"):
+            with open(name, "rb") as file:
+                content = file.read()
+            os.remove(name)
+            with open(name, "wb") as file:
+                file.write(content)
+            scale_image(name, 1 / BONE_SLOPE)
+        self.refuse(*self.command, "--search", 0, 0, "-o", "r", says="no line integrals of attenuation")
+        self.succeed(*self.command, "--search", 0, 0, "--no-intensities", "-o", "u")
         self.refuse_usage(*self.command, "--patch", 2, "-o", "r", says="--patch")
         self.refuse_usage(*self.command, "-o", "nowhere/r", says="nowhere")
         self.refuse("register", "deform", "truth.vtu", *self.command[3:], "-o", "r", says="truth.vtu")

@@ -99,7 +99,14 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   ApplySearch(options.views, parameters);
   const auto atlas = ReadAtlasWithDensity(options.model);
   const auto views = ReadRegistrationViews(options.views, session);
-  auto       registration = DeformableRadiographRegistration<DensityMesh<double>, CTImage>::New();
+  if (parameters.intensities &&
+      std::any_of(views.begin(), views.end(), [](const PreparedView & view) { return view.monotoneOnly; }))
+  {
+    parameters.intensities = false;
+    session.Warn("display values are no line integrals: the X-rays' gradients alone are used, which tell little of "
+                 "density");
+  }
+  auto registration = DeformableRadiographRegistration<DensityMesh<double>, CTImage>::New();
   registration->SetModel(atlas);
   registration->SetParameters(parameters);
   ConnectViews(options.views, views, *registration, session);

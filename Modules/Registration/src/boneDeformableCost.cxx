@@ -152,6 +152,8 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
 {
   constexpr double margin = 0.25; // of the background's length
   constexpr double leastScale = 1e-3;
+  constexpr double mostGain = 3.0; // a density so far from the atlas is none of this bone
+  constexpr double anyGain = 1e6;
   const MeshArrays mesh = m_Model.Synthesize(state.coefficients);
   const auto       images = this->Project(mesh.points, mesh, state.pose, execution);
   m_Metrics.resize(2);
@@ -172,6 +174,15 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
     IntensityDifferenceParameters parameters;
     parameters.knotSpacing = std::max(4.0, length);
     parameters.gainDeviation = m_P.gainDeviation;
+    IntensityDifferenceParameters free = parameters;
+    free.gainDeviation = anyGain;
+    const double gain = IntensityDifference(view, free).GetGain(images[v].data());
+    if (!(gain > 1.0 / mostGain && gain < mostGain))
+    {
+      throw std::invalid_argument("View " + std::to_string(v + 1) + ": its values are " + std::to_string(gain) +
+                                  " times the line integrals of the bone found, so they are no line integrals of "
+                                  "attenuation: turn Intensities off to use their gradients alone.");
+    }
     parameters.scale = std::max(leastScale, IntensityDifference(view, parameters).EstimateScale(images[v].data()));
     m_Metrics[1].push_back(std::make_unique<IntensityDifference>(view, parameters));
   }

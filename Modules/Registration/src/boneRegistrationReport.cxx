@@ -148,6 +148,14 @@ ReportRegistration(const DeformableRegistrationResult & result)
   }
   const double points = static_cast<double>(std::max<std::size_t>(1, result.pointDeviations.size()));
   report["pointDeviation"] = { { "mean", sum / points }, { "largest", largest } };
+  report["regions"] = nlohmann::json::array();
+  for (const RegionEstimate & region : result.regions)
+  {
+    report["regions"].push_back({ { "region", region.region },
+                                  { "volume", { region.volume, region.volumeDeviation } },
+                                  { "density", { region.density, region.densityDeviation } },
+                                  { "mass", { region.mass, region.massDeviation } } });
+  }
   report["precision"] = result.precision;
   return report;
 }

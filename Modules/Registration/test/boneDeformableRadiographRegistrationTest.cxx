@@ -45,6 +45,7 @@ Parameters()
   parameters.population = 30;
   parameters.pixels = 96;
   parameters.searchPixels = 48;
+  parameters.softTissue = 0.0;
   return parameters;
 }
 
@@ -59,11 +60,26 @@ ToImage(const std::vector<float> & values, const XRayGeometry::View & view)
   return image;
 }
 
+/** X-rays of the bone in air, attenuation by the slope of bone from 0 HU on. */
+std::vector<RadiographView>
+LineIntegrals()
+{
+  auto xrays = TwoXRays(TrueBone(), Truth);
+  for (RadiographView & xray : xrays)
+  {
+    for (float & x : xray.values)
+    {
+      x *= static_cast<float>(BoneSlopeAt60keV);
+    }
+  }
+  return xrays;
+}
+
 Registration::Pointer
 MakeRegistration(unsigned int views = 2)
 {
   auto       registration = Registration::New();
-  const auto xrays = TwoXRays(TrueBone(), Truth);
+  const auto xrays = LineIntegrals();
   registration->SetModel(Model());
   for (unsigned int v = 0; v < views; ++v)
   {
@@ -155,7 +171,7 @@ TEST(DeformableRadiographRegistration, MovesWithViewsAndStart)
   back.rotation = motion.rotation.transpose();
   back.translation = motion.ApplyInverse(Vector3::Zero());
   auto       turned = MakeRegistration();
-  const auto xrays = TwoXRays(TrueBone(), Truth);
+  const auto xrays = LineIntegrals();
   for (unsigned int v = 0; v < 2; ++v)
   {
     auto geometry = XRayGeometry::New();
@@ -280,6 +296,19 @@ TEST(DeformableRadiographRegistration, RefusesWhatItCannotUse)
   few->SetModel(Model(std::move(three)));
   few->SetSmoothModes(9);
   EXPECT_THAT(ErrorOf(few), HasSubstr("set SmoothDeviation"));
+
+  // Density times mm, not attenuation.
+  auto unit = MakeRegistration();
+  for (unsigned int v = 0; v < 2; ++v)
+  {
+    const auto xray = TwoXRays(TrueBone(), Truth)[v];
+    auto       view = XRayGeometry::New();
+    view->SetView(xray.view);
+    unit->SetView(v, ToImage(xray.values, xray.view), view);
+  }
+  EXPECT_THAT(ErrorOf(unit), HasSubstr("no line integrals of attenuation"));
+  unit->SetIntensities(false);
+  EXPECT_EQ(ErrorOf(unit), "");
 
   auto range = MakeRegistration();
   range->SetPatch(2);
