@@ -520,7 +520,9 @@ OtherFormats()
       UseAtlas,
       { "info atlas.h5",
         "sample atlas.h5 --shape 1=1 -o out/sample.vtu",
-        "sample atlas.h5 --random 7 -o out/sample.vtu" },
+        "sample atlas.h5 --random 7 -o out/sample.vtu",
+        "register deform atlas.h5 --xray radiograph.mha radiograph.mha --geometry view.json --search 0 0 --pixels 32 "
+        "--search-pixels 32 --iterations 1 --smooth-modes 0 --no-intensities --no-collimator -o out/bone" },
       false,
       Payload::Length,
       SameModel },
