@@ -94,7 +94,11 @@ MakeTransform(std::string name)
   }
   itk::TransformFactoryBase::RegisterDefaultTransforms();
   const itk::LightObject::Pointer made = itk::ObjectFactoryBase::CreateInstance(name.c_str());
-  const AnyTransform::Pointer     transform = dynamic_cast<AnyTransform *>(made.GetPointer());
+  if (made.IsNotNull())
+  {
+    made->UnRegister(); // CreateInstance counts one reference more than it gives
+  }
+  const AnyTransform::Pointer transform = dynamic_cast<AnyTransform *>(made.GetPointer());
   if (transform.IsNull())
   {
     Refuse("has a transform that is not known");
