@@ -146,7 +146,8 @@ DeformableModel::AddRegions(const StatisticalModelContent & atlas)
         std::fill_n(change.begin() + static_cast<std::ptrdiff_t>(t * row), row, std::sqrt(sum[r]));
       }
     }
-    if (volumes(r, 0) > 0.0 && sum[r] > 0.0)
+    constexpr double rounding = 1e-12;
+    if (volumes(r, 0) > 0.0 && sum[r] > rounding * sum.maxCoeff())
     {
       this->AddDensity(change);
     }

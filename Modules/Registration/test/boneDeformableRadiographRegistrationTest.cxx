@@ -144,6 +144,23 @@ TEST(DeformableRadiographRegistration, FindsPoseShapeAndDensity)
   EXPECT_EQ(result.costs.size(), 2u);
   EXPECT_EQ(result.quality, RegistrationQuality::Ok);
   EXPECT_GT(result.precision, 0.0);
+  EXPECT_GT(result.intensityPrecision, 0.0);
+  ASSERT_FALSE(result.regions.empty());
+  const RegionEstimate & whole = result.regions.back();
+  double                 volume = 0.0;
+  for (const Id4 & ids : result.mesh.tetrahedra)
+  {
+    const auto & x = result.mesh.points;
+    volume += SignedVolume(x[ids[0]], x[ids[1]], x[ids[2]], x[ids[3]]);
+  }
+  EXPECT_EQ(whole.region, -1);
+  EXPECT_NEAR(whole.volume, volume, 1e-6 * volume);
+  EXPECT_NEAR(whole.mass, whole.density * whole.volume, 1e-9 * whole.mass);
+  for (const double deviation : { whole.volumeDeviation, whole.densityDeviation, whole.massDeviation })
+  {
+    EXPECT_GT(deviation, 0.0);
+  }
+  EXPECT_LT(whole.densityDeviation, 0.1 * whole.density);
 
   const MeshArrays found = registration->GetOutput()->GetArrays();
   EXPECT_LT(MeanDistance(found.points, Moved(TrueBone().points, Truth)), 0.2);
