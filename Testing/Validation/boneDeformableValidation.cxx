@@ -248,7 +248,7 @@ Run(const Trials & trials)
                                  { "volume", { region.volume, region.volumeDeviation, volume } },
                                  { "density", { region.density, region.densityDeviation, mass / volume } },
                                  { "mass", { region.mass, region.massDeviation, mass } } });
-      // Of regions: what the registered model of the subject has, as regions of voxels have other borders.
+      // And what the registered model of the subject has.
       volume = mass = 0.0;
       for (std::size_t t = 0; t < truth.tetrahedra.size(); ++t)
       {
@@ -265,10 +265,9 @@ Run(const Trials & trials)
         }
       }
       auto & put3 = row["regions"].back();
-      put3["volume"][2] = volume;
-      put3["density"][2] = mass / volume;
-      put3["massOfVoxels"] = put3["mass"][2];
-      put3["mass"][2] = mass;
+      put3["volume"].push_back(volume);
+      put3["density"].push_back(mass / volume);
+      put3["mass"].push_back(mass);
     }
     row["coverage"] = inside / points;
     row["pointError"] = std::sqrt(squares / points);
@@ -299,6 +298,7 @@ main(int argc, char * argv[])
   app.add_option("--seed", trials.seed);
   app.add_flag("--trace", trials.trace);
   app.add_option("--scatter", trials.simulation.scatterToPrimary, "Scatter-to-primary ratio");
+  app.add_option("--blur", trials.simulation.blur, "Of the detector, pixels");
   app.add_option("--photons", trials.simulation.photons, "Of the open beam, a pixel");
   app.add_option("--smooth-modes", p.smoothModes);
   app.add_option("--smooth-deviation", p.smoothDeviation);
@@ -311,6 +311,7 @@ main(int argc, char * argv[])
   app.add_option("--gain-deviation", p.gainDeviation);
   app.add_option("--patch", p.patch);
   app.add_option("--sigma", p.sigma);
+  app.add_option("--surface-deviation", p.surfaceDeviation);
   app.add_option("--iterations", p.iterations);
   app.add_option("--search-pixels", p.searchPixels);
   app.add_option("--target-pixels", p.pixels);

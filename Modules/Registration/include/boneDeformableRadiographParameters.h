@@ -51,7 +51,9 @@ namespace bone
     "background-length", "Distance of the knots of the splines that take up what lies about the bone") \
   value(double, gainDeviation, GainDeviation, 0.0, ParameterRange::Between(0.0, 1.0), "", "gain-deviation", \
     "Standard deviation of each view's factor of line integrals about 1; 0: they are exact") \
-  value(int, iterations, Iterations, 8, ParameterRange::Between(1, 1000), "", "iterations", \
+  value(double, surfaceDeviation, SurfaceDeviation, 0.2, ParameterRange::LengthOrZero(), "mm", "surface-deviation", \
+    "Standard deviation of how far the model's surface lies outside the bone's as a whole; goes into the covariance") \
+  value(int, iterations, Iterations, 12, ParameterRange::Between(1, 1000), "", "iterations", \
     "Steps at the most, at each resolution") \
   value(int, seed, Seed, 1, ParameterRange::Between(0, 1e9), "", "seed", "Seed of the search's random numbers")
 // clang-format on

@@ -4,7 +4,7 @@
 #include "boneDeformableCost.h"
 
 #include "boneIntensityDifference.h"
-#include "boneMeshDerivatives.h"
+#include "boneOutwardMove.h"
 #include "bonePatchGradientCorrelation.h"
 
 #include <Eigen/Cholesky>
@@ -107,6 +107,10 @@ DeformableCost::DeformableCost(const DeformableModel &                model,
   , m_P(parameters)
   , m_Metrics(1)
 {
+  m_Modes.pose = true;
+  m_Modes.shape = model.displacements;
+  m_Modes.density = model.densities;
+  m_Images.resize(views.size());
   m_Attenuation.scale = parameters.attenuationSlope;
   m_Attenuation.offset = -parameters.attenuationSlope * parameters.softTissue;
   // About as wide a patch of the bone at each resolution.
@@ -191,15 +195,10 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
 std::vector<DeformableTerm>
 DeformableCost::Evaluate(const DeformableState & state,
                          const Execution &       execution,
-                         std::vector<double> *   ofViews) const
+                         std::vector<double> *   ofViews)
 {
-  const MeshArrays mesh = m_Model.Synthesize(state.coefficients);
-  RadiographModes  modes;
-  modes.pose = true;
-  modes.poseCentre = state.pose.centre;
-  modes.shape = m_Model.displacements;
-  modes.density = m_Model.densities;
-  const auto                  count = static_cast<Eigen::Index>(modes.Count());
+  const MeshArrays            mesh = m_Model.Synthesize(state.coefficients);
+  const auto                  count = static_cast<Eigen::Index>(m_Modes.Count());
   std::vector<DeformableTerm> totals(m_Metrics.size());
   for (DeformableTerm & total : totals)
   {
@@ -207,36 +206,59 @@ DeformableCost::Evaluate(const DeformableState & state,
     total.gradient = Eigen::VectorXd::Zero(count);
     total.hessian = Eigen::MatrixXd::Zero(count, count);
   }
+  m_Modes.poseCentre = state.pose.centre;
+  std::vector<std::vector<float *>> pointers(m_Views.size());
   for (std::size_t v = 0; v < m_Views.size(); ++v)
   {
-    const std::size_t    pixels = m_Views[v].GetNumberOfPixels();
-    std::vector<float>   images(pixels * (1 + modes.Count()));
-    std::vector<float *> pointers;
-    for (std::size_t i = 0; i <= modes.Count(); ++i)
+    const std::size_t pixels = m_Views[v].GetNumberOfPixels();
+    m_Images[v].resize(pixels * (1 + m_Modes.Count()));
+    for (std::size_t i = 0; i <= m_Modes.Count(); ++i)
     {
-      pointers.push_back(&images[i * pixels]);
+      pointers[v].push_back(&m_Images[v][i * pixels]);
     }
     ProjectMeshDerivatives(
-      mesh.points, mesh, state.pose.ToModelSpace(m_Views[v].view), m_Attenuation, modes, execution, pointers);
-    std::vector<MetricValue> values(m_Metrics.size());
-    execution.For(values.size(), [&](std::size_t k) { values[k] = m_Metrics[k][v]->EvaluateDerivatives(pointers); });
-    for (std::size_t k = 0; k < values.size(); ++k)
-    {
-      AddShare(totals[k], values[k], 1.0 / static_cast<double>(m_Views.size()));
-    }
-    if (ofViews != nullptr)
-    {
-      ofViews->push_back(values[0].cost);
-    }
+      mesh.points, mesh, state.pose.ToModelSpace(m_Views[v].view), m_Attenuation, m_Modes, execution, pointers[v]);
+  }
+  // Each metric of each view, the views of a metric one after the other.
+  std::vector<MetricValue> values(m_Metrics.size() * m_Views.size());
+  execution.For(values.size(), [&](std::size_t i) {
+    const std::size_t v = i % m_Views.size();
+    values[i] = m_Metrics[i / m_Views.size()][v]->EvaluateDerivatives(pointers[v]);
+  });
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    AddShare(totals[i / m_Views.size()], values[i], 1.0 / static_cast<double>(m_Views.size()));
+  }
+  for (std::size_t v = 0; v < m_Views.size() && ofViews != nullptr; ++v)
+  {
+    ofViews->push_back(values[v].cost);
   }
   return totals;
 }
 
-double
-DeformableCost::EvaluateShape(const DeformableState & state, const Execution & execution) const
+std::vector<Eigen::VectorXd>
+DeformableCost::SurfaceSlopes(const DeformableState & state, const Execution & execution)
 {
-  const auto images =
-    this->Project(m_Model.MovePoints(state.coefficients), m_Model.meanDensities, state.pose, execution);
+  m_Modes.shape.push_back(OutwardMove(m_Model.Synthesize(state.coefficients)));
+  const auto values = this->Evaluate(state, execution);
+  const auto densities = static_cast<Eigen::Index>(m_Modes.density.size());
+  const auto surface = static_cast<Eigen::Index>(m_Modes.Count()) - densities - 1;
+  m_Modes.shape.pop_back();
+  std::vector<Eigen::VectorXd> slopes;
+  for (const DeformableTerm & value : values)
+  {
+    slopes.emplace_back(surface + densities);
+    slopes.back() << value.hessian.col(surface).head(surface), value.hessian.col(surface).tail(densities);
+  }
+  return slopes;
+}
+
+double
+DeformableCost::EvaluateShape(const CoarseModel &     model,
+                              const DeformableState & state,
+                              const Execution &       execution) const
+{
+  const auto images = this->Project(model.MovePoints(state.coefficients), model.mesh, state.pose, execution);
   double sum = 0.0;
   for (std::size_t v = 0; v < images.size(); ++v)
   {

@@ -6,7 +6,7 @@
 
 #include "boneDeformableModel.h"
 #include "boneExecution.h"
-#include "boneMeshRadiograph.h"
+#include "boneMeshDerivatives.h"
 #include "boneRadiographMetric.h"
 #include "boneRigidPose.h"
 
@@ -55,11 +55,15 @@ public:
   /** The mean over the views of the gradients' cost, and of the line integrals' where they are used, with their
    * derivatives by the six steps of the pose and the coefficients. `ofViews`: where given, each view's first cost. */
   std::vector<DeformableTerm>
-  Evaluate(const DeformableState & state, const Execution & execution, std::vector<double> * ofViews = nullptr) const;
+  Evaluate(const DeformableState & state, const Execution & execution, std::vector<double> * ofViews = nullptr);
 
-  /** The gradients' cost alone, with the mean density of each cell of the atlas' mean. */
+  /** Of each metric, the second derivatives by all parameters and by how far the outer surface lies outward, mm. */
+  std::vector<Eigen::VectorXd>
+  SurfaceSlopes(const DeformableState & state, const Execution & execution);
+
+  /** The gradients' cost alone, of another model. */
   double
-  EvaluateShape(const DeformableState & state, const Execution & execution) const;
+  EvaluateShape(const CoarseModel & model, const DeformableState & state, const Execution & execution) const;
 
 private:
   using Metrics = std::vector<std::unique_ptr<RadiographMetric>>;
@@ -75,6 +79,8 @@ private:
   const DeformableRadiographParameters & m_P;
   MeshRadiographParameters               m_Attenuation;
   std::vector<RadiographView>            m_Views;
+  RadiographModes                        m_Modes;
+  std::vector<std::vector<float>>        m_Images;  ///< of each view, the radiograph and its derivatives
   std::vector<Metrics>                   m_Metrics; ///< of gradients, of line integrals; one a view
 };
 } // namespace bone

@@ -3,12 +3,15 @@
  *=========================================================================*/
 #include "boneDeformableModel.h"
 
+#include "boneBuildLevels.h"
 #include "boneMeanDensities.h"
+#include "boneMeshValidator.h"
 #include "boneResidualModes.h"
 #include "boneSmoothModes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -60,6 +63,22 @@ MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const 
   return sums;
 }
 
+std::vector<Vector3>
+Displace(std::vector<Vector3>                      points,
+         const std::vector<std::vector<Vector3>> & displacements,
+         const Eigen::VectorXd &                   coefficients)
+{
+  for (std::size_t k = 0; k < displacements.size(); ++k)
+  {
+    const double b = coefficients[static_cast<Eigen::Index>(k)];
+    for (std::size_t p = 0; p < points.size() && b != 0.0; ++p)
+    {
+      points[p] += b * displacements[k][p];
+    }
+  }
+  return points;
+}
+
 Eigen::Index
 CountOf(const PrincipalModes & modes, int most)
 {
@@ -70,7 +89,7 @@ CountOf(const PrincipalModes & modes, int most)
 DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
                                  const DeformableRadiographParameters & parameters)
   : mean(atlas.mean)
-  , meanDensities(WithMeanDensities(atlas.mean))
+  , meanDensities(WithMeanDensities(atlas.mean).coefficients)
   , shapeModes(CountOf(atlas.shape, parameters.shapeModes))
   , densityModes(CountOf(atlas.density, parameters.densityModes))
 {
@@ -125,8 +144,7 @@ DeformableModel::AddRegions(const StatisticalModelContent & atlas)
   }
   // Mean density of each region, of what is left of each subject.
   const Eigen::MatrixXd       left = atlas.density.modes * LeaveOneOutResiduals(atlas.density, atlas.densityScores);
-  const std::vector<double> & ofMean = meanDensities.coefficients;
-  const Eigen::MatrixXd       volumes = MeasureCells(mean, mean.points, ofMean);
+    const Eigen::MatrixXd       volumes = MeasureCells(mean, mean.points, meanDensities);
   Eigen::VectorXd             sum = Eigen::VectorXd::Zero(volumes.rows());
   MeshArrays                  rest = mean;
   for (Eigen::Index i = 0; i < left.cols(); ++i)
@@ -157,22 +175,44 @@ DeformableModel::AddRegions(const StatisticalModelContent & atlas)
 std::vector<Vector3>
 DeformableModel::MovePoints(const Eigen::VectorXd & coefficients) const
 {
-  std::vector<Vector3> points = mean.points;
-  for (std::size_t k = 0; k < displacements.size(); ++k)
+  return Displace(mean.points, displacements, coefficients);
+}
+
+std::vector<Vector3>
+CoarseModel::MovePoints(const Eigen::VectorXd & coefficients) const
+{
+  return Displace(mesh.points, displacements, coefficients);
+}
+
+CoarseModel
+DeformableModel::Coarsen(std::size_t tetrahedra, Eigen::Index modes, const Execution & execution) const
+{
+  CoarseModel         coarse{ WithMeanDensities(mean), {} };
+  std::vector<IdType> kept(mean.points.size());
+  std::iota(kept.begin(), kept.end(), IdType{ 0 });
+  if (tetrahedra < mean.tetrahedra.size() && ValidateMesh(mean).IsValid())
   {
-    const double b = coefficients[static_cast<Eigen::Index>(k)];
-    for (std::size_t p = 0; p < points.size() && b != 0.0; ++p)
-    {
-      points[p] += b * displacements[k][p];
-    }
+    TetraCollapseParameters parameters;
+    parameters.levels = { static_cast<IdType>(tetrahedra) };
+    BuiltLevel level = BuildLevels(coarse.mesh, parameters, execution).front();
+    coarse.mesh = std::move(level.mesh);
+    kept = std::move(level.parentPoint);
   }
-  return points;
+  for (Eigen::Index k = 0; k < std::min(modes, shapeModes); ++k)
+  {
+    const std::vector<Vector3> & mode = displacements[static_cast<std::size_t>(k)];
+    std::vector<Vector3>         ofKept(kept.size());
+    std::transform(
+      kept.begin(), kept.end(), ofKept.begin(), [&mode](IdType p) { return mode[static_cast<std::size_t>(p)]; });
+    coarse.displacements.push_back(std::move(ofKept));
+  }
+  return coarse;
 }
 
 Eigen::MatrixXd
 DeformableModel::MeasureRegions(const Eigen::VectorXd & coefficients) const
 {
-  std::vector<double> means = meanDensities.coefficients;
+  std::vector<double> means = meanDensities;
   for (std::size_t k = 0; k < cellDensities.size(); ++k)
   {
     const double b = coefficients[static_cast<Eigen::Index>(displacements.size() + k)];

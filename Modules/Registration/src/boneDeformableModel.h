@@ -5,10 +5,22 @@
 #define boneDeformableModel_h
 
 #include "boneDeformableRadiographParameters.h"
+#include "boneExecution.h"
 #include "boneStatisticalModel.h"
 
 namespace bone
 {
+/** \struct CoarseModel
+ * \brief A simplified mean with one density in each cell, and leading modes of shape: for many small images. */
+struct CoarseModel
+{
+  MeshArrays                        mesh;
+  std::vector<std::vector<Vector3>> displacements;
+
+  std::vector<Vector3>
+  MovePoints(const Eigen::VectorXd & coefficients) const;
+};
+
 /** \struct DeformableModel
  * \brief The atlas as registration moves it: a mean, and linear modes of independent standard normal coefficients: the
  * atlas' of shape, smooth ones, the atlas' of density, and one of each region's density as a whole, with the variance
@@ -18,7 +30,7 @@ struct DeformableModel
   DeformableModel(const StatisticalModelContent & atlas, const DeformableRadiographParameters & parameters);
 
   MeshArrays                        mean;
-  MeshArrays                        meanDensities; ///< the mean, with one density in each cell
+  std::vector<double>               meanDensities; ///< of the mean's cells
   std::vector<std::vector<Vector3>> displacements; ///< of shape, then smooth; mm per standard deviation
   std::vector<std::vector<double>>  cellDensities; ///< changes of the cells' means per standard deviation
   std::vector<std::vector<double>>  densities;     ///< changes of the coefficients per standard deviation
@@ -39,6 +51,10 @@ struct DeformableModel
   /** A row for each region from 0 on, and one for the whole bone: volume (mm^3), mean density, density times volume. */
   Eigen::MatrixXd
   MeasureRegions(const Eigen::VectorXd & coefficients) const;
+
+  /** With as many tetrahedra or fewer, where the mean can be simplified so far. */
+  CoarseModel
+  Coarsen(std::size_t tetrahedra, Eigen::Index modes, const Execution & execution) const;
 
   /** The mesh of the coefficients: shape, smooth, density. */
   MeshArrays

@@ -5,6 +5,7 @@
 
 #include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
+#include "boneSymmetricEigen.h"
 
 #include <Eigen/Cholesky>
 
@@ -60,13 +61,18 @@ public:
     {
       const auto      share = 0.6 / static_cast<double>(resolutions.size());
       const Execution part = execution.Part(0.3 + share * static_cast<double>(i), 0.3 + share * (i + 1.0));
-      const bool      last = i + 1 == resolutions.size() && m_P.intensities;
+      const bool      last = i + 1 == resolutions.size();
+      const bool      intensities = last && m_P.intensities;
       DeformableCost  cost(m_Model, m_Views, m_P, resolutions[i]);
-      this->Descend(cost, state, result, part.Part(0.0, last ? 0.5 : 1.0));
-      if (last)
+      auto            values = this->Descend(cost, state, result, part.Part(0.0, intensities ? 0.5 : 1.0));
+      if (intensities)
       {
         cost.UseIntensities(state, part.Silent());
-        this->Descend(cost, state, result, part.Part(0.5, 1.0));
+        values = this->Descend(cost, state, result, part.Part(0.5, 1.0));
+      }
+      if (last)
+      {
+        this->SetCovariance(cost, state, values, result, part);
       }
     }
     result.pose = state.pose;
@@ -96,7 +102,8 @@ private:
   Search(const Execution & execution) const
   {
     constexpr int      generations = 100;
-    constexpr double   narrow = 0.01;        // of the box
+    constexpr double   narrow = 0.05;        // of the box
+    constexpr int      tetrahedra = 1000;
     constexpr double   mostDeviations = 4.0; // of a mode of shape
     constexpr double   beyond = 1.25;        // turns about three axes add up
     const Eigen::Index shape = std::min<Eigen::Index>(m_P.searchModes, m_Model.shapeModes);
@@ -110,6 +117,7 @@ private:
       return state;
     }
     const DeformableCost cost(m_Model, m_Views, m_P, m_P.searchPixels);
+    const CoarseModel    model = m_Model.Coarsen(tetrahedra, shape, execution.Silent());
     EvolutionStrategy    strategy(
       Eigen::VectorXd::Zero(box.size()), 0.4, m_P.population, static_cast<std::uint64_t>(m_P.seed));
     const auto at = [&](const Eigen::VectorXd & candidate) {
@@ -125,7 +133,7 @@ private:
       Eigen::VectorXd         costs(candidates.cols());
       execution.Silent().For(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
         const auto k = static_cast<Eigen::Index>(i);
-        costs[k] = cost.EvaluateShape(at(candidates.col(k)), execution.Silent());
+        costs[k] = cost.EvaluateShape(model, at(candidates.col(k)), execution.Silent());
       });
       strategy.Tell(costs);
       execution.Report(static_cast<double>(strategy.GetGeneration()) / generations);
@@ -153,6 +161,14 @@ private:
     return { state.pose.Moved(step.head<PoseSteps>()), state.coefficients + step.tail(state.coefficients.size()) };
   }
 
+  /** By what share of its precision cost k counts. What shape leaves of the line integrals correlates over the whole
+   * bone: leave-one-out over femora, mean densities are three times as exact where they count by a tenth. */
+  static double
+  ShareOf(std::size_t k)
+  {
+    return k == 0 ? 1.0 : 0.1;
+  }
+
   /** Sum of the costs by their precisions, and the prior's. */
   struct Posterior
   {
@@ -166,14 +182,11 @@ private:
     Posterior posterior;
     posterior.gradient = m_Prior.cwiseProduct(this->FromPrior(at));
     posterior.hessian = m_Prior.asDiagonal();
-    for (const DeformableTerm & value : values)
+    for (std::size_t k = 0; k < values.size(); ++k)
     {
-      // What shape leaves of the line integrals correlates over the whole bone: leave-one-out over femora, mean
-      // densities are three times as exact where they count by a tenth.
-      constexpr double ofIntensities = 0.1;
-      posterior.precisions.push_back((posterior.precisions.empty() ? 1.0 : ofIntensities) * value.EstimatePrecision());
-      posterior.gradient += posterior.precisions.back() * value.gradient;
-      posterior.hessian += posterior.precisions.back() * value.hessian;
+      posterior.precisions.push_back(ShareOf(k) * values[k].EstimatePrecision());
+      posterior.gradient += posterior.precisions[k] * values[k].gradient;
+      posterior.hessian += posterior.precisions[k] * values[k].hessian;
     }
     return posterior;
   }
@@ -194,13 +207,14 @@ private:
     return gain;
   }
 
-  void
-  Descend(const DeformableCost &         cost,
+  /** Levenberg-Marquardt steps; the costs where they end. */
+  std::vector<DeformableTerm>
+  Descend(DeformableCost &               cost,
           DeformableState &              at,
           DeformableRegistrationResult & result,
           const Execution &              execution) const
   {
-    constexpr double least = 0.05; // of the logarithm of the posterior
+    constexpr double least = 0.5; // of the logarithm of the posterior, whose own spread is half the parameters' number
     const Execution  silent = execution.Silent();
     auto             values = cost.Evaluate(at, silent);
     double           damping = 1e-3;
@@ -234,19 +248,49 @@ private:
       }
       execution.Report((i + 1.0) / m_P.iterations);
     }
+    return values;
+  }
+
+  /** The covariance of the maximum of the posterior about the truth: of the errors of the costs' gradients, of what the
+   * prior pulls, and of a surface that lies outside the bone's as a whole. */
+  void
+  SetCovariance(DeformableCost &                    cost,
+                const DeformableState &             at,
+                const std::vector<DeformableTerm> & values,
+                DeformableRegistrationResult &      result,
+                const Execution &                   execution) const
+  {
     const Posterior posterior = this->MakePosterior(values, at);
     result.cost = values[0].cost;
     result.precision = posterior.precisions[0];
     result.intensityPrecision = posterior.precisions.size() > 1 ? posterior.precisions[1] : 0.0;
-    // Of the errors of the gradient and of what the prior pulls, about the truth.
     const auto      size = posterior.hessian.rows();
+    const auto      slopes = cost.SurfaceSlopes(at, execution.Silent());
     Eigen::MatrixXd errors = m_Prior.asDiagonal();
+    Eigen::VectorXd ofSurface = Eigen::VectorXd::Zero(size);
     for (std::size_t k = 0; k < values.size(); ++k)
     {
-      errors += posterior.precisions[k] * posterior.precisions[k] * values[k].scatters.back();
+      // A cost that counts by a share, for its errors correlate, has errors that scatter so much more.
+      errors += posterior.precisions[k] * posterior.precisions[k] / ShareOf(k) * values[k].scatters.back();
+      ofSurface += m_P.surfaceDeviation * posterior.precisions[k] * slopes[k];
     }
+    errors += ofSurface * ofSurface.transpose();
     const Eigen::MatrixXd inverse = posterior.hessian.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-    result.covariance = inverse * errors * inverse;
+    result.covariance = this->Bound(inverse * errors * inverse);
+  }
+
+  /** A covariance that along no direction is wider than the pose's prior. The atlas' own bounds nothing: it is estimated
+   * from some subjects, and leave-one-out, regions' densities lie outside of it. */
+  Eigen::MatrixXd
+  Bound(const Eigen::MatrixXd & covariance) const
+  {
+    constexpr double wide = 1e6; // variance where there is no bound, in that of the posterior
+    Eigen::VectorXd  precision = (wide * covariance.diagonal()).cwiseInverse();
+    precision.head<PoseSteps>() = precision.head<PoseSteps>().cwiseMax(m_Prior.head<PoseSteps>());
+    const Eigen::VectorXd roots = precision.cwiseSqrt();
+    const SymmetricEigen  scaled = EigenOf<Eigen::Dynamic>(roots.asDiagonal() * covariance * roots.asDiagonal());
+    const Eigen::MatrixXd back = roots.cwiseInverse().asDiagonal() * scaled.vectors;
+    return back * scaled.values.cwiseMin(1.0).cwiseMax(0.0).asDiagonal() * back.transpose();
   }
 
   /** The mesh in its place, and the deviations of its points. */
@@ -255,7 +299,7 @@ private:
   {
     result.mesh = m_Model.Synthesize(result.coefficients);
     result.regions = this->MeasureRegions(result);
-    const auto      count = static_cast<Eigen::Index>(m_Model.displacements.size());
+    const auto      count = m_Model.shapeModes + m_Model.smoothModes;
     Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, PoseSteps + count);
     const auto      covariance = result.covariance.topLeftCorner(PoseSteps + count, PoseSteps + count);
     for (std::size_t p = 0; p < result.mesh.points.size(); ++p)

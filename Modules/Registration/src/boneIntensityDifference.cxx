@@ -72,6 +72,8 @@ Check(const IntensityDifferenceParameters & p)
 struct IntensityDifference::Data
 {
   IntensityDifferenceParameters parameters;
+  std::array<int, 2>            whole; ///< size of the images
+  PixelBox                      box;   ///< of the pixels that count, to which all else is cut
   std::array<int, 2>            size;
   BackgroundSpline              background;
   std::vector<float>            weights;
@@ -81,10 +83,16 @@ struct IntensityDifference::Data
   Eigen::VectorXd               precision; ///< inverse prior variances
 
   Data(const RadiographView & target, const IntensityDifferenceParameters & p)
+    : Data(target, p, CountedWeights(target, 0))
+  {}
+
+  Data(const RadiographView & target, const IntensityDifferenceParameters & p, const std::vector<float> & counted)
     : parameters(p)
-    , size(target.view.size)
+    , whole(target.view.size)
+    , box(BoxOf({ counted.data() }, whole))
+    , size{ box.Columns(), box.Rows() }
     , background(size, p.knotSpacing)
-    , weights(CountedWeights(target, 0))
+    , weights(this->Cut(counted.data()))
     , values(this->Counted(target.values.data()))
   {
     for (float w : weights)
@@ -123,12 +131,31 @@ struct IntensityDifference::Data
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]);
   }
 
+  /** Where a row of the box starts in a whole image. */
+  std::size_t
+  WholeRowStart(int row) const
+  {
+    return static_cast<std::size_t>(box.first[1] + row) * static_cast<std::size_t>(whole[0]) +
+           static_cast<std::size_t>(box.first[0]);
+  }
+
+  std::vector<float>
+  Cut(const float * image) const
+  {
+    std::vector<float> cut;
+    for (int r = 0; r < size[1]; ++r)
+    {
+      cut.insert(cut.end(), image + this->WholeRowStart(r), image + this->WholeRowStart(r) + size[0]);
+    }
+    return cut;
+  }
   std::vector<float>
   Counted(const float * image) const
   {
-    std::vector<float> counted(weights.size());
-    std::transform(
-      weights.begin(), weights.end(), image, counted.begin(), [](float w, float x) { return w > 0.0f ? x : 0.0f; });
+    std::vector<float> counted = this->Cut(image);
+    std::transform(weights.begin(), weights.end(), counted.begin(), counted.begin(), [](float w, float x) {
+      return w > 0.0f ? x : 0.0f;
+    });
     return counted;
   }
 
@@ -291,14 +318,14 @@ struct IntensityDifference::Data
     std::vector<double> products(static_cast<std::size_t>(size[0]));
     for (Eigen::Index k = 0; k < taken.cols(); ++k)
     {
-      const float * derivative = images[static_cast<std::size_t>(k) + 1];
       for (int r = 0; r < size[1]; ++r)
       {
-        double withGain = 0.0;
+        const float * derivative = images[static_cast<std::size_t>(k) + 1] + this->WholeRowStart(r);
+        double        withGain = 0.0;
         for (std::size_t c = 0, i = this->RowStart(r); c < products.size(); ++c, ++i)
         {
           const double root = roots[i];
-          products[c] = root > 0.0 ? factor * root * root * derivative[i] : 0.0;
+          products[c] = root > 0.0 ? factor * root * root * derivative[c] : 0.0;
           withGain += products[c] * fit.image[i];
         }
         if (this->FitsBackground())
@@ -333,7 +360,7 @@ struct IntensityDifference::Data
     std::vector<double> smooth(static_cast<std::size_t>(size[0]), 0.0);
     for (Eigen::Index k = 0; k < part.cols(); ++k)
     {
-      const float * derivative = images[static_cast<std::size_t>(k) + 1];
+      const float * derivative = images[static_cast<std::size_t>(k) + 1] + this->WholeRowStart(row);
       if (this->FitsBackground())
       {
         background.Evaluate(row, taken.col(k), smooth.data());
@@ -341,7 +368,7 @@ struct IntensityDifference::Data
       const double ofGain = this->FitsGain() ? taken(taken.rows() - 1, k) : 0.0;
       for (std::size_t c = 0, i = this->RowStart(row); c < smooth.size(); ++c, ++i)
       {
-        const double rest = gain * derivative[i] - smooth[c] - ofGain * fit.image[i];
+        const double rest = gain * derivative[c] - smooth[c] - ofGain * fit.image[i];
         part(static_cast<Eigen::Index>(c), k) =
           roots[i] > 0.0f ? static_cast<float>(roots[i] / parameters.scale * rest) : 0.0f;
       }
@@ -419,10 +446,15 @@ std::vector<float>
 IntensityDifference::Residuals(const float * image) const
 {
   const auto         fit = m_Data->Minimize(image);
-  std::vector<float> residuals(fit.residuals.size());
-  std::transform(fit.residuals.begin(), fit.residuals.end(), residuals.begin(), [this](double z) {
-    return static_cast<float>(m_Data->parameters.scale * z);
-  });
+  std::vector<float> residuals(static_cast<std::size_t>(m_Data->whole[0]) * static_cast<std::size_t>(m_Data->whole[1]));
+  for (int r = 0; r < m_Data->size[1]; ++r)
+  {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(m_Data->size[0]); ++c)
+    {
+      residuals[m_Data->WholeRowStart(r) + c] =
+        static_cast<float>(m_Data->parameters.scale * fit.residuals[m_Data->RowStart(r) + c]);
+    }
+  }
   return residuals;
 }
 

@@ -4,7 +4,9 @@
 #include "boneMetricPixels.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
+#include <string>
 
 namespace bone
 {
@@ -44,21 +46,57 @@ CountedWeights(const RadiographView & target, int radius)
   return counted;
 }
 
+PixelBox
+BoxOf(const std::vector<const float *> & images, const std::array<int, 2> & size)
+{
+  PixelBox   box{ size, { 0, 0 } };
+  const auto shows = [](float x) { return x != 0.0f; };
+  for (const float * image : images)
+  {
+    for (int r = 0; r < size[1]; ++r)
+    {
+      const float * row = image + static_cast<std::size_t>(r) * static_cast<std::size_t>(size[0]);
+      const float * end = row + size[0];
+      const float * first = std::find_if(row, end, shows);
+      if (first != end)
+      {
+        const auto last = std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), shows);
+        box.first = { std::min(box.first[0], static_cast<int>(first - row)), std::min(box.first[1], r) };
+        box.end = { std::max(box.end[0], static_cast<int>(last.base() - row)), std::max(box.end[1], r + 1) };
+      }
+    }
+  }
+  return box.end[0] > 0 ? box : PixelBox{};
+}
+
 CountedGradient::CountedGradient(const RadiographView & target, double sigma)
-  : m_Gradient(target.view.size[0], target.view.size[1], sigma)
+  : m_Size(target.view.size)
+  , m_Gradient(target.view.size[0], target.view.size[1], sigma)
   , m_Weights(CountedWeights(target, m_Gradient.Radius()))
 {}
 
 GradientComponents
 CountedGradient::Apply(const float * image) const
 {
-  GradientComponents result{ std::vector<float>(m_Weights.size()), std::vector<float>(m_Weights.size()) };
-  m_Gradient.Apply(image, result[0].data(), result[1].data());
+  return this->Apply(image, { { 0, 0 }, m_Size });
+}
+
+GradientComponents
+CountedGradient::Apply(const float * image, const PixelBox & box) const
+{
+  GradientComponents result{ std::vector<float>(box.GetNumberOfPixels()), std::vector<float>(box.GetNumberOfPixels()) };
+  m_Gradient.Apply(image, box, result[0].data(), result[1].data());
+  const auto columns = static_cast<std::size_t>(box.Columns());
   for (auto & component : result)
   {
-    std::transform(component.begin(), component.end(), m_Weights.begin(), component.begin(), [](float d, float w) {
-      return w > 0.0f ? d : 0.0f;
-    });
+    auto at = component.begin();
+    for (int r = box.first[1]; r < box.end[1]; ++r)
+    {
+      const float * weights = &m_Weights[static_cast<std::size_t>(r) * static_cast<std::size_t>(m_Size[0]) +
+                                         static_cast<std::size_t>(box.first[0])];
+      at = std::transform(
+        at, at + static_cast<std::ptrdiff_t>(columns), weights, at, [](float d, float w) { return w > 0.0f ? d : 0.0f; });
+    }
   }
   return result;
 }

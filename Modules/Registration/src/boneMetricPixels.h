@@ -17,6 +17,10 @@ namespace bone
 std::vector<float>
 CountedWeights(const RadiographView & target, int radius);
 
+/** The least box that holds every pixel at which an image is not 0. */
+PixelBox
+BoxOf(const std::vector<const float *> & images, const std::array<int, 2> & size);
+
 /** Derivatives of one image along columns and rows. */
 using GradientComponents = std::array<std::vector<float>, 2>;
 
@@ -34,10 +38,19 @@ public:
   {
     return m_Weights;
   }
+  int
+  Radius() const
+  {
+    return m_Gradient.Radius();
+  }
+  /** Of the whole image, or of the pixels of a box. */
   GradientComponents
   Apply(const float * image) const;
+  GradientComponents
+  Apply(const float * image, const PixelBox & box) const;
 
 private:
+  std::array<int, 2> m_Size;
   ImageGradient      m_Gradient;
   std::vector<float> m_Weights;
 };

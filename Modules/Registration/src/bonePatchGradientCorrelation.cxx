@@ -6,7 +6,10 @@
 #include "boneMetricPixels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -14,18 +17,16 @@ namespace bone
 {
 namespace
 {
-/** Weighted sums over the pixels of blocks or patches, #n of them; channel 0 is the X-ray, 1 the radiograph, the rest
- * are its derivatives by the parameters. */
+/** Weighted sums over the pixels of blocks or patches, #n of them; channel 0 is the radiograph, the rest are its
+ * derivatives by the parameters. */
 struct PatchSums
 {
-  Eigen::VectorXd                weight;
   std::array<Eigen::MatrixXd, 2> sum;       ///< #channels by #n, of each component
-  Eigen::MatrixXd                withFixed; ///< #channels by #n, of the products with channel 0, both components
-  Eigen::MatrixXd                withModel; ///< with channel 1
+  Eigen::MatrixXd                withFixed; ///< #channels by #n, of the products with the X-ray, both components
+  Eigen::MatrixXd                withModel; ///< with channel 0
 
   PatchSums(Eigen::Index channels, Eigen::Index n)
-    : weight(Eigen::VectorXd::Zero(n))
-    , sum{ Eigen::MatrixXd::Zero(channels, n), Eigen::MatrixXd::Zero(channels, n) }
+    : sum{ Eigen::MatrixXd::Zero(channels, n), Eigen::MatrixXd::Zero(channels, n) }
     , withFixed(Eigen::MatrixXd::Zero(channels, n))
     , withModel(Eigen::MatrixXd::Zero(channels, n))
   {}
@@ -33,7 +34,6 @@ struct PatchSums
   void
   Add(Eigen::Index to, const PatchSums & other, Eigen::Index from)
   {
-    weight[to] += other.weight[from];
     for (int axis = 0; axis < 2; ++axis)
     {
       sum[axis].col(to) += other.sum[axis].col(from);
@@ -41,46 +41,14 @@ struct PatchSums
     withFixed.col(to) += other.withFixed.col(from);
     withModel.col(to) += other.withModel.col(from);
   }
-
-  /** Products of what deviates from the patch's means in place of products. */
-  void
-  Centre()
-  {
-    for (Eigen::Index p = 0; p < weight.size(); ++p)
-    {
-      for (int axis = 0; axis < 2 && weight[p] > 0.0; ++axis)
-      {
-        withFixed.col(p) -= sum[axis](0, p) / weight[p] * sum[axis].col(p);
-        withModel.col(p) -= sum[axis](1, p) / weight[p] * sum[axis].col(p);
-      }
-    }
-  }
 };
 
-/** Adds a row of a block: the products of n pixels of a channel, whose weighted channels 0 and 1 are given. */
-void
-AddRow(const float * channel,
-       const float * weights,
-       const float * fixed,
-       const float * model,
-       int           n,
-       double &      sum,
-       double &      withFixed,
-       double &      withModel)
+/** Gradients of a radiograph and its derivatives, in a box of whole blocks. */
+struct Channels
 {
-  float s = 0.0f;
-  float f = 0.0f;
-  float g = 0.0f;
-  for (int i = 0; i < n; ++i)
-  {
-    s += weights[i] * channel[i];
-    f += fixed[i] * channel[i];
-    g += model[i] * channel[i];
-  }
-  sum += s;
-  withFixed += f;
-  withModel += g;
-}
+  PixelBox                        box;
+  std::vector<GradientComponents> gradients;
+};
 } // namespace
 
 struct PatchGradientCorrelation::Data
@@ -89,9 +57,11 @@ struct PatchGradientCorrelation::Data
   std::array<int, 2>  size;
   int                 block; ///< half a patch, pixels
   std::array<int, 2>  blocks{};
-  GradientComponents  fixed;        ///< of the X-ray, less what is nothing
-  GradientComponents  weighted;     ///< times the weights
+  GradientComponents  weighted;     ///< of the X-ray, times the weights
+  Eigen::VectorXd     patchWeights; ///< of each patch, the sum of the weights
   std::vector<double> inverseNorms; ///< 1 / |f| of each patch; 0 where the X-ray shows nothing
+  /** Of each patch, the weighted sum of the X-ray's. */
+  std::array<Eigen::VectorXd, 2> patchSums;
 
   Data(const RadiographView & target, int patch, double sigma)
     : gradient(target, sigma)
@@ -102,25 +72,29 @@ struct PatchGradientCorrelation::Data
     {
       blocks[axis] = std::max(2, (size[axis] + block - 1) / block);
     }
-  }
-
-  std::size_t
-  Pixels() const
-  {
-    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-  }
-  Eigen::Index
-  Patches() const
-  {
-    return static_cast<Eigen::Index>(blocks[0] - 1) * (blocks[1] - 1);
-  }
-  /** Block (i, j) of the four of a patch. */
-  Eigen::Index
-  BlockOf(Eigen::Index patch, int i, int j) const
-  {
-    const Eigen::Index column = patch % (blocks[0] - 1);
-    const Eigen::Index row = patch / (blocks[0] - 1);
-    return (row + j) * blocks[0] + column + i;
+    const GradientComponents fixed = gradient.Apply(target.values.data());
+    weighted = fixed;
+    for (auto & component : weighted)
+    {
+      std::transform(
+        component.begin(), component.end(), this->Weights().begin(), component.begin(), [](float f, float w) {
+          return w * f;
+        });
+    }
+    patchWeights = this->SumOfPatches(this->Weights());
+    patchSums = { this->SumOfPatches(weighted[0]), this->SumOfPatches(weighted[1]) };
+    const PixelBox  whole{ { 0, 0 }, size };
+    const PatchSums sums = this->Sum({ whole, { fixed } });
+    const auto      squares = sums.withFixed.row(0);
+    const double    largest = squares.maxCoeff();
+    if (!squares.allFinite() || !(largest > 0.0))
+    {
+      throw std::invalid_argument("the X-ray is constant or not finite where its pixels count");
+    }
+    for (Eigen::Index p = 0; p < squares.size(); ++p)
+    {
+      inverseNorms.push_back(squares[p] > 1e-10 * largest ? 1.0 / std::sqrt(squares[p]) : 0.0);
+    }
   }
 
   const std::vector<float> &
@@ -128,90 +102,236 @@ struct PatchGradientCorrelation::Data
   {
     return gradient.GetWeights();
   }
-
-  /** Of all channels but the first, which is the X-ray. */
-  PatchSums
-  Sum(const std::vector<GradientComponents> & channels) const
+  std::size_t
+  PixelAt(int column, int row) const
   {
-    const auto         count = static_cast<Eigen::Index>(channels.size()) + 1;
-    const auto &       weights = this->Weights();
-    PatchSums          ofBlocks(count, static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
-    std::vector<float> model(static_cast<std::size_t>(size[0]));
-    for (int r = 0; r < size[1]; ++r)
-    {
-      const std::size_t start = static_cast<std::size_t>(r) * size[0];
-      for (int axis = 0; axis < 2; ++axis)
-      {
-        for (int c = 0; c < size[0]; ++c)
-        {
-          model[c] = weights[start + c] * channels[0][axis][start + c];
-        }
-        for (int b = 0; b * block < size[0]; ++b)
-        {
-          const int          first = b * block;
-          const int          n = std::min(block, size[0] - first);
-          const std::size_t  at = start + first;
-          const Eigen::Index to = static_cast<Eigen::Index>(r / block) * blocks[0] + b;
-          for (Eigen::Index k = 0; k < count; ++k)
-          {
-            const auto & channel = k == 0 ? fixed[axis] : channels[static_cast<std::size_t>(k) - 1][axis];
-            AddRow(&channel[at],
-                   &weights[at],
-                   &weighted[axis][at],
-                   &model[first],
-                   n,
-                   ofBlocks.sum[axis](k, to),
-                   ofBlocks.withFixed(k, to),
-                   ofBlocks.withModel(k, to));
-          }
-          if (axis == 0)
-          {
-            float w = 0.0f;
-            for (int i = 0; i < n; ++i)
-            {
-              w += weights[at + i];
-            }
-            ofBlocks.weight[to] += w;
-          }
-        }
-      }
-    }
-    PatchSums ofPatches(count, this->Patches());
-    for (Eigen::Index p = 0; p < this->Patches(); ++p)
-    {
-      for (int i = 0; i < 4; ++i)
-      {
-        ofPatches.Add(p, ofBlocks, this->BlockOf(p, i % 2, i / 2));
-      }
-    }
-    ofPatches.Centre();
-    return ofPatches;
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(size[0]) + static_cast<std::size_t>(column);
   }
 
-  /** The sum over pixels of a_p w (derivative i) (derivative j), where `ofPatches` are the a_p of the patches. */
-  Eigen::MatrixXd
-  Gram(const std::vector<GradientComponents> & channels, const Eigen::VectorXd & ofPatches) const
+  /** Blocks of a box along an axis. */
+  int
+  BlocksOf(const PixelBox & box, int axis) const
   {
-    const auto &    weights = this->Weights();
-    const auto      m = static_cast<Eigen::Index>(channels.size()) - 1;
+    return box.end[axis] == size[axis] ? blocks[axis] - box.first[axis] / block
+                                       : (box.end[axis] - box.first[axis]) / block;
+  }
+  /** Patches of two by two blocks of a box. */
+  Eigen::Index
+  PatchesOf(const PixelBox & box) const
+  {
+    return static_cast<Eigen::Index>(this->BlocksOf(box, 0) - 1) * (this->BlocksOf(box, 1) - 1);
+  }
+  /** Column and row, among all patches, of a patch of a box. */
+  std::array<Eigen::Index, 2>
+  PlaceOf(const PixelBox & box, Eigen::Index patch) const
+  {
+    const Eigen::Index inRow = this->BlocksOf(box, 0) - 1;
+    return { box.first[0] / block + patch % inRow, box.first[1] / block + patch / inRow };
+  }
+  Eigen::Index
+  IndexOf(const std::array<Eigen::Index, 2> & place) const
+  {
+    return place[1] * (blocks[0] - 1) + place[0];
+  }
+  double
+  InverseNormOf(const PixelBox & box, Eigen::Index patch) const
+  {
+    return inverseNorms[static_cast<std::size_t>(this->IndexOf(this->PlaceOf(box, patch)))];
+  }
+  /** Block (i, j) of the four of a patch, both of a box. */
+  Eigen::Index
+  BlockOf(const PixelBox & box, Eigen::Index patch, int i, int j) const
+  {
+    const Eigen::Index inRow = this->BlocksOf(box, 0);
+    return (patch / (inRow - 1) + j) * inRow + patch % (inRow - 1) + i;
+  }
+
+  Eigen::VectorXd
+  SumOfPatches(const std::vector<float> & image) const
+  {
+    const PixelBox  whole{ { 0, 0 }, size };
     Eigen::VectorXd ofBlocks = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(blocks[0]) * blocks[1]);
-    for (Eigen::Index p = 0; p < ofPatches.size(); ++p)
+    for (int r = 0; r < size[1]; ++r)
+    {
+      for (int c = 0; c < size[0]; ++c)
+      {
+        ofBlocks[static_cast<Eigen::Index>(r / block) * blocks[0] + c / block] += image[this->PixelAt(c, r)];
+      }
+    }
+    Eigen::VectorXd sums(this->PatchesOf(whole));
+    for (Eigen::Index p = 0; p < sums.size(); ++p)
+    {
+      sums[p] = ofBlocks[this->BlockOf(whole, p, 0, 0)] + ofBlocks[this->BlockOf(whole, p, 1, 0)] +
+                ofBlocks[this->BlockOf(whole, p, 0, 1)] + ofBlocks[this->BlockOf(whole, p, 1, 1)];
+    }
+    return sums;
+  }
+
+  /** Gradients where there are any, and a block more on all sides, so that all patches that they touch are whole. */
+  Channels
+  Differentiate(const std::vector<const float *> & images) const
+  {
+    Channels channels;
+    channels.box = BoxOf(images, size);
+    if (channels.box.GetNumberOfPixels() == 0)
+    {
+      return channels;
+    }
+    const int radius = gradient.Radius();
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      int & first = channels.box.first[axis];
+      int & end = channels.box.end[axis];
+      first = std::max(0, (first - radius) / block - 1) * block;
+      end = std::min(size[axis], ((end + radius + block - 1) / block + 1) * block);
+    }
+    for (const float * image : images)
+    {
+      channels.gradients.push_back(gradient.Apply(image, channels.box));
+    }
+    return channels;
+  }
+
+  /** Sums over the patches of the channels' box, of what deviates from the patches' means. */
+  PatchSums
+  Sum(const Channels & channels) const
+  {
+    const PixelBox &   box = channels.box;
+    const auto         count = static_cast<Eigen::Index>(channels.gradients.size());
+    PatchSums          ofBlocks(count, static_cast<Eigen::Index>(this->BlocksOf(box, 0)) * this->BlocksOf(box, 1));
+    std::vector<float> model(box.GetNumberOfPixels());
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      auto from = channels.gradients[0][axis].begin();
+      auto to = model.begin();
+      for (int r = box.first[1]; r < box.end[1]; ++r, from += box.Columns())
+      {
+        to = std::transform(from, from + box.Columns(), &this->Weights()[this->PixelAt(box.first[0], r)], to, std::multiplies<>());
+      }
+      for (Eigen::Index k = 0; k < count; ++k)
+      {
+        this->AddProducts(channels, axis, model, k, ofBlocks);
+      }
+    }
+    PatchSums sums(count, this->PatchesOf(box));
+    for (Eigen::Index p = 0; p < this->PatchesOf(box); ++p)
     {
       for (int i = 0; i < 4; ++i)
       {
-        ofBlocks[this->BlockOf(p, i % 2, i / 2)] += ofPatches[p];
+        sums.Add(p, ofBlocks, this->BlockOf(box, p, i % 2, i / 2));
+      }
+      const Eigen::Index at = this->IndexOf(this->PlaceOf(box, p));
+      for (int axis = 0; axis < 2 && patchWeights[at] > 0.0; ++axis)
+      {
+        const auto sum = sums.sum[axis].col(p);
+        sums.withFixed.col(p) -= patchSums[axis][at] / patchWeights[at] * sum;
+        sums.withModel.col(p) -= sum[0] / patchWeights[at] * sum;
+      }
+    }
+    return sums;
+  }
+
+  /** Adds the products of a component of channel k to the sums of blocks, a row of blocks at a time. */
+  void
+  AddProducts(const Channels &           channels,
+              int                        axis,
+              const std::vector<float> & model,
+              Eigen::Index               k,
+              PatchSums &                to) const
+  {
+    const PixelBox &   box = channels.box;
+    const int          columns = box.Columns();
+    const float *      channel = channels.gradients[static_cast<std::size_t>(k)][axis].data();
+    std::vector<float> sums(3 * static_cast<std::size_t>(columns));
+    float * const      s = sums.data();
+    float * const      f = s + columns;
+    float * const      g = f + columns;
+    for (int r = box.first[1]; r < box.end[1];)
+    {
+      std::fill(sums.begin(), sums.end(), 0.0f);
+      const Eigen::Index row = static_cast<Eigen::Index>((r - box.first[1]) / block) * this->BlocksOf(box, 0);
+      for (const int end = std::min(r + block, box.end[1]); r < end; ++r)
+      {
+        const std::size_t at = static_cast<std::size_t>(r - box.first[1]) * static_cast<std::size_t>(columns);
+        AddRow(columns,
+               channel + at,
+               &this->Weights()[this->PixelAt(box.first[0], r)],
+               &weighted[axis][this->PixelAt(box.first[0], r)],
+               &model[at],
+               s,
+               f,
+               g);
+      }
+      for (Eigen::Index b = row, c = 0; c < columns; ++b, c += block)
+      {
+        const Eigen::Index n = std::min<Eigen::Index>(block, columns - c);
+        to.sum[axis](k, b) += std::accumulate(s + c, s + c + n, 0.0);
+        to.withFixed(k, b) += std::accumulate(f + c, f + c + n, 0.0);
+        to.withModel(k, b) += std::accumulate(g + c, g + c + n, 0.0);
+      }
+    }
+  }
+
+  static void
+  AddRow(int           n,
+         const float * channel,
+         const float * weights,
+         const float * fixed,
+         const float * model,
+         float *       s,
+         float *       f,
+         float *       g)
+  {
+    for (int c = 0; c < n; ++c)
+    {
+      s[c] += weights[c] * channel[c];
+      f[c] += fixed[c] * channel[c];
+      g[c] += model[c] * channel[c];
+    }
+  }
+
+  /** Adds the patches' shares in clusters of two by two patches' width. */
+  void
+  Cluster(const PixelBox & box, const Eigen::MatrixXd & shares, MetricValue & value) const
+  {
+    constexpr int width = 4;
+    const int     inRow = (blocks[0] - 1 + width - 1) / width;
+    const int     rows = (blocks[1] - 1 + width - 1) / width;
+    value.blocksInRow = inRow;
+    value.shares = Eigen::MatrixXd::Zero(shares.rows(), static_cast<Eigen::Index>(inRow) * rows);
+    for (Eigen::Index p = 0; p < shares.cols(); ++p)
+    {
+      const auto [column, row] = this->PlaceOf(box, p);
+      value.shares.col(row / width * inRow + column / width) += shares.col(p);
+    }
+  }
+
+  /** The sum over pixels of a_p w (derivative i) (derivative j), where `factors` are the a_p of the box's patches. */
+  Eigen::MatrixXd
+  Gram(const Channels & channels, const Eigen::VectorXd & factors) const
+  {
+    const PixelBox & box = channels.box;
+    const auto       m = static_cast<Eigen::Index>(channels.gradients.size()) - 1;
+    const int        inRow = this->BlocksOf(box, 0);
+    Eigen::VectorXd  ofBlocks = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(inRow) * this->BlocksOf(box, 1));
+    for (Eigen::Index p = 0; p < factors.size(); ++p)
+    {
+      for (int i = 0; i < 4; ++i)
+      {
+        ofBlocks[this->BlockOf(box, p, i % 2, i / 2)] += factors[p];
       }
     }
     GramSum                            sum(m);
-    Eigen::MatrixXf                    part(size[0], m);
+    Eigen::MatrixXf                    part(box.Columns(), m);
     std::vector<std::pair<int, float>> roots; // of the pixels that count: column, root of the factor
-    for (int r = 0; r < size[1]; ++r)
+    for (int r = box.first[1]; r < box.end[1]; ++r)
     {
-      const std::size_t start = static_cast<std::size_t>(r) * size[0];
+      const std::size_t start = static_cast<std::size_t>(r - box.first[1]) * static_cast<std::size_t>(box.Columns());
       roots.clear();
-      for (int c = 0; c < size[0]; ++c)
+      for (int c = 0; c < box.Columns(); ++c)
       {
-        const double a = weights[start + c] * ofBlocks[static_cast<Eigen::Index>(r / block) * blocks[0] + c / block];
+        const double a = this->Weights()[this->PixelAt(box.first[0] + c, r)] *
+                         ofBlocks[static_cast<Eigen::Index>((r - box.first[1]) / block) * inRow + c / block];
         if (a > 0.0)
         {
           roots.emplace_back(c, static_cast<float>(std::sqrt(a)));
@@ -222,7 +342,7 @@ struct PatchGradientCorrelation::Data
       {
         for (Eigen::Index k = 0; k < m; ++k)
         {
-          const float * channel = &channels[static_cast<std::size_t>(k) + 1][axis][start];
+          const float * channel = &channels.gradients[static_cast<std::size_t>(k) + 1][axis][start];
           for (Eigen::Index i = 0; i < used; ++i)
           {
             const auto & [column, root] = roots[static_cast<std::size_t>(i)];
@@ -239,42 +359,24 @@ struct PatchGradientCorrelation::Data
 PatchGradientCorrelation::~PatchGradientCorrelation() = default;
 
 PatchGradientCorrelation::PatchGradientCorrelation(const RadiographView & target, int patch, double sigma)
-{
-  auto data = std::make_unique<Data>(target, patch, sigma);
-  data->fixed = data->gradient.Apply(target.values.data());
-  for (int axis = 0; axis < 2; ++axis)
-  {
-    data->weighted[axis].resize(data->Pixels());
-    std::transform(data->fixed[axis].begin(),
-                   data->fixed[axis].end(),
-                   data->Weights().begin(),
-                   data->weighted[axis].begin(),
-                   [](float f, float w) { return w * f; });
-  }
-  const PatchSums sums = data->Sum({ data->fixed });
-  const auto      squares = sums.withFixed.row(0);
-  const double    largest = squares.maxCoeff();
-  if (!squares.allFinite() || !(largest > 0.0))
-  {
-    throw std::invalid_argument("the X-ray is constant or not finite where its pixels count");
-  }
-  for (Eigen::Index p = 0; p < squares.size(); ++p)
-  {
-    data->inverseNorms.push_back(squares[p] > 1e-10 * largest ? 1.0 / std::sqrt(squares[p]) : 0.0);
-  }
-  m_Data = std::move(data);
-}
+  : m_Data(std::make_unique<const Data>(target, patch, sigma))
+{}
 
 double
 PatchGradientCorrelation::Evaluate(const float * image) const
 {
-  const PatchSums sums = m_Data->Sum({ m_Data->gradient.Apply(image) });
+  const Channels channels = m_Data->Differentiate({ image });
+  if (channels.gradients.empty())
+  {
+    return 1.0;
+  }
+  const PatchSums sums = m_Data->Sum(channels);
   double          shared = 0.0;
   double          norms = 0.0;
-  for (Eigen::Index p = 0; p < m_Data->Patches(); ++p)
+  for (Eigen::Index p = 0; p < sums.withModel.cols(); ++p)
   {
-    shared += sums.withFixed(1, p) * m_Data->inverseNorms[static_cast<std::size_t>(p)];
-    norms += std::sqrt(std::max(0.0, sums.withModel(1, p)));
+    shared += sums.withFixed(0, p) * m_Data->InverseNormOf(channels.box, p);
+    norms += std::sqrt(std::max(0.0, sums.withModel(0, p)));
   }
   return norms > 0.0 ? 1.0 - shared / norms : 1.0;
 }
@@ -282,105 +384,103 @@ PatchGradientCorrelation::Evaluate(const float * image) const
 MetricValue
 PatchGradientCorrelation::EvaluateDerivatives(const std::vector<float *> & images) const
 {
-  std::vector<GradientComponents> channels;
-  for (const float * image : images)
+  const auto  m = static_cast<Eigen::Index>(images.size()) - 1;
+  MetricValue value;
+  value.cost = 1.0;
+  value.gradient = Eigen::VectorXd::Zero(m);
+  value.hessian = Eigen::MatrixXd::Zero(m, m);
+  value.shares.resize(m, 0);
+  const Channels channels = m_Data->Differentiate({ images.begin(), images.end() });
+  if (channels.gradients.empty())
   {
-    channels.push_back(m_Data->gradient.Apply(image));
+    return value;
   }
-  const auto      m = static_cast<Eigen::Index>(images.size()) - 1;
   const PatchSums sums = m_Data->Sum(channels);
-  const auto      patches = m_Data->Patches();
-
-  MetricValue     value;
-  Eigen::MatrixXd ofPatches = Eigen::MatrixXd::Zero(m, patches); // of the shared part
+  const auto      patches = m_Data->PatchesOf(channels.box);
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(m, patches); // derivatives of the products with the X-ray
   Eigen::MatrixXd ofNorms = Eigen::MatrixXd::Zero(m, patches);
   Eigen::VectorXd norms = Eigen::VectorXd::Zero(patches);
   Eigen::VectorXd likeness = Eigen::VectorXd::Zero(patches);
-  double          shared = 0.0;
-  const double    least = 1e-12 * std::max(0.0, sums.withModel.row(1).maxCoeff());
+  double          product = 0.0;
+  const double    least = 1e-12 * std::max(0.0, sums.withModel.row(0).maxCoeff());
   for (Eigen::Index p = 0; p < patches; ++p)
   {
-    const double inverse = m_Data->inverseNorms[static_cast<std::size_t>(p)];
-    shared += sums.withFixed(1, p) * inverse;
-    ofPatches.col(p) = inverse * sums.withFixed.col(p).tail(m);
-    if (sums.withModel(1, p) > least)
+    const double inverse = m_Data->InverseNormOf(channels.box, p);
+    product += sums.withFixed(0, p) * inverse;
+    shared.col(p) = inverse * sums.withFixed.col(p).tail(m);
+    if (sums.withModel(0, p) > least)
     {
-      norms[p] = std::sqrt(sums.withModel(1, p));
+      norms[p] = std::sqrt(sums.withModel(0, p));
       ofNorms.col(p) = sums.withModel.col(p).tail(m) / norms[p];
-      likeness[p] = sums.withFixed(1, p) * inverse / norms[p];
+      likeness[p] = sums.withFixed(0, p) * inverse / norms[p];
     }
   }
   const double total = norms.sum();
-  value.gradient = Eigen::VectorXd::Zero(m);
-  value.hessian = Eigen::MatrixXd::Zero(m, m);
   if (!(total > 0.0))
   {
-    value.cost = 1.0;
-    value.shares.resize(m, 0);
     return value;
   }
-  const double correlation = shared / total;
+  const double          correlation = product / total;
+  const Eigen::MatrixXd shares = (correlation * ofNorms - shared) / total;
   value.cost = 1.0 - correlation;
-  // The patches' shares in clusters of two by two patches' width.
-  constexpr int width = 4;
-  const int     clusters = (m_Data->blocks[0] - 1 + width - 1) / width;
-  const int     rows = (m_Data->blocks[1] - 1 + width - 1) / width;
-  value.blocksInRow = clusters;
-  value.shares = Eigen::MatrixXd::Zero(m, static_cast<Eigen::Index>(clusters) * rows);
-  Eigen::VectorXd ofGram = Eigen::VectorXd::Zero(patches);
+  value.gradient = shares.rowwise().sum();
+  m_Data->Cluster(channels.box, shares, value);
+  // Half the squared length of f / |f| - g / |g| is 1 - likeness; its curvature goes with the likeness.
+  Eigen::VectorXd factors = Eigen::VectorXd::Zero(patches);
+  Eigen::VectorXd ofMeans = Eigen::VectorXd::Zero(patches);
   for (Eigen::Index p = 0; p < patches; ++p)
   {
-    const Eigen::VectorXd share = (correlation * ofNorms.col(p) - ofPatches.col(p)) / total;
-    const Eigen::Index    column = p % (m_Data->blocks[0] - 1);
-    const Eigen::Index    row = p / (m_Data->blocks[0] - 1);
-    value.shares.col(row / width * clusters + column / width) += share;
-    value.gradient += share;
+    const double weight = m_Data->patchWeights[m_Data->IndexOf(m_Data->PlaceOf(channels.box, p))];
     if (norms[p] > 0.0)
     {
-      // Half the squared length of f / |f| - g / |g| is 1 - likeness; its curvature goes with the likeness.
-      ofGram[p] = std::max(likeness[p], 0.1) / (norms[p] * total);
+      factors[p] = std::max(likeness[p], 0.1) / (norms[p] * total);
+      ofMeans[p] = weight > 0.0 ? factors[p] / weight : 0.0;
     }
   }
-  value.hessian = m_Data->Gram(channels, ofGram);
-  for (Eigen::Index p = 0; p < patches; ++p)
-  {
-    if (ofGram[p] > 0.0)
-    {
-      value.hessian -= ofGram[p] * ofNorms.col(p) * ofNorms.col(p).transpose();
-      for (int axis = 0; axis < 2 && sums.weight[p] > 0.0; ++axis)
-      {
-        const auto mean = sums.sum[axis].col(p).tail(m);
-        value.hessian -= ofGram[p] / sums.weight[p] * mean * mean.transpose();
-      }
-    }
-  }
+  const auto subtract = [&value](const auto & columns, const Eigen::VectorXd & ofColumns) {
+    const Eigen::MatrixXd scaled = columns * ofColumns.cwiseSqrt().asDiagonal();
+    value.hessian.selfadjointView<Eigen::Lower>().rankUpdate(scaled, -1.0);
+  };
+  value.hessian = m_Data->Gram(channels, factors);
+  subtract(ofNorms, factors);
+  subtract(sums.sum[0].bottomRows(m), ofMeans);
+  subtract(sums.sum[1].bottomRows(m), ofMeans);
+  value.hessian = Eigen::MatrixXd(value.hessian.selfadjointView<Eigen::Lower>());
   return value;
 }
 
 std::vector<float>
 PatchGradientCorrelation::Correlations(const float * image) const
 {
-  const PatchSums     sums = m_Data->Sum({ m_Data->gradient.Apply(image) });
-  std::vector<float>  map(m_Data->Pixels(), 0.0f);
-  const double        least = 1e-12 * std::max(0.0, sums.withModel.row(1).maxCoeff());
-  std::vector<double> ofBlocks(static_cast<std::size_t>(m_Data->blocks[0]) * m_Data->blocks[1], 0.0);
-  for (Eigen::Index p = 0; p < m_Data->Patches(); ++p)
+  std::vector<float> map(m_Data->Weights().size(), 0.0f);
+  const Channels     channels = m_Data->Differentiate({ image });
+  if (channels.gradients.empty())
   {
-    if (sums.withModel(1, p) > least)
+    return map;
+  }
+  const PixelBox &    box = channels.box;
+  const PatchSums     sums = m_Data->Sum(channels);
+  const double        least = 1e-12 * std::max(0.0, sums.withModel.row(0).maxCoeff());
+  const auto          inRow = static_cast<std::size_t>(m_Data->BlocksOf(box, 0));
+  std::vector<double> ofBlocks(inRow * static_cast<std::size_t>(m_Data->BlocksOf(box, 1)), 0.0);
+  for (Eigen::Index p = 0; p < sums.withModel.cols(); ++p)
+  {
+    if (sums.withModel(0, p) > least)
     {
       for (int i = 0; i < 4; ++i)
       {
-        ofBlocks[static_cast<std::size_t>(m_Data->BlockOf(p, i % 2, i / 2))] +=
-          0.25 * sums.withFixed(1, p) * m_Data->inverseNorms[static_cast<std::size_t>(p)] /
-          std::sqrt(sums.withModel(1, p));
+        ofBlocks[static_cast<std::size_t>(m_Data->BlockOf(box, p, i % 2, i / 2))] +=
+          0.25 * sums.withFixed(0, p) * m_Data->InverseNormOf(box, p) / std::sqrt(sums.withModel(0, p));
       }
     }
   }
-  for (std::size_t i = 0; i < map.size(); ++i)
+  for (int r = 0; r < box.Rows(); ++r)
   {
-    const std::size_t row = i / static_cast<std::size_t>(m_Data->size[0]) / m_Data->block;
-    const std::size_t column = i % static_cast<std::size_t>(m_Data->size[0]) / m_Data->block;
-    map[i] = static_cast<float>(ofBlocks[row * m_Data->blocks[0] + column]);
+    for (int c = 0; c < box.Columns(); ++c)
+    {
+      map[m_Data->PixelAt(box.first[0] + c, box.first[1] + r)] = static_cast<float>(
+        ofBlocks[static_cast<std::size_t>(r / m_Data->block) * inRow + static_cast<std::size_t>(c / m_Data->block)]);
+    }
   }
   return map;
 }

@@ -6,6 +6,7 @@
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
 #include "boneMeanDensities.h"
+#include "boneOutwardMove.h"
 #include "bonePatchGradientCorrelation.h"
 #include "bonePrincipalModes.h"
 #include "boneRigidCost.h"
@@ -54,28 +55,6 @@ CentreOf(const MeshArrays & mesh)
 {
   const Vector3 sum = std::accumulate(mesh.points.begin(), mesh.points.end(), Vector3(Vector3::Zero()));
   return sum / static_cast<double>(mesh.points.size());
-}
-
-/** Moves of the points by which the outer surface moves outward by 1 mm. */
-std::vector<Vector3>
-OutwardMove(const MeshArrays & mesh)
-{
-  std::vector<Vector3> move(mesh.points.size(), Vector3::Zero());
-  for (const auto & face : BoundaryFaces(mesh))
-  {
-    const Vector3 & a = mesh.points[static_cast<std::size_t>(face[0])];
-    const Vector3   area =
-      (mesh.points[static_cast<std::size_t>(face[1])] - a).cross(mesh.points[static_cast<std::size_t>(face[2])] - a);
-    for (const IdType p : face)
-    {
-      move[static_cast<std::size_t>(p)] += area;
-    }
-  }
-  for (Vector3 & x : move)
-  {
-    x /= std::max(x.norm(), 1e-30);
-  }
-  return move;
 }
 
 /** A level made ready for radiographs. */
