@@ -216,6 +216,16 @@ Run(const Trials & trials)
       });
     row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     put("found", Compare(result.mesh, surface));
+    // Moved onto the truth: of the shape alone, as one view does not tell the depth.
+    MeshArrays      aligned = result.mesh;
+    const AffineMap onto = FitAlignment(aligned.points, truth.points, AlignmentKind::Rigid);
+    for (Vector3 & x : aligned.points)
+    {
+      x = onto(x);
+    }
+    put("aligned", Compare(aligned, surface));
+    row["quality"] = static_cast<int>(result.quality);
+    row["distinctness"] = result.distinctness;
     double inside = 0.0, squares = 0.0, deviations = 0.0, points = 0.0;
     for (std::size_t p = 0; p < truth.points.size(); ++p)
     {

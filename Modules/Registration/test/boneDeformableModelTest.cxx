@@ -3,8 +3,11 @@
  *=========================================================================*/
 #include "boneDeformableModel.h"
 
+#include "boneDeformableTestAtlas.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -75,5 +78,41 @@ TEST(DeformableModel, MeasuresRegionsAndTheWhole)
   EXPECT_NEAR(at(3, 0), 3.0, 1e-12);
   EXPECT_NEAR(at(3, 1), 1202.0 / 3.0, 1e-9);
   EXPECT_EQ(at(0, 0), 0.0);
+}
+TEST(DeformableModel, CoarsensAndKeepsTheModesOfThePointsThatStay)
+{
+  StatisticalModelContent atlas = test::Atlas();
+  atlas.mean = test::BallMesh(12, Vector3(10, 20, 30), 20.0);
+  atlas.mean.degree.assign(atlas.mean.tetrahedra.size(), 0);
+  atlas.mean.maximumDegree = 0;
+  atlas.mean.coefficients.assign(atlas.mean.tetrahedra.size(), 500.0);
+  const Eigen::VectorXd mean = StackPoints(atlas.mean.points);
+  atlas.shape = test::ModesOf(mean, Eigen::MatrixXd::Random(mean.size(), 2));
+  atlas.density = PrincipalModes();
+  atlas.densityScores.resize(0, 0);
+  DeformableRadiographParameters parameters;
+  parameters.smoothModes = 0;
+  const DeformableModel model(atlas, parameters);
+  const std::size_t     asked = model.mean.tetrahedra.size() / 3;
+  const CoarseModel     coarse = model.Coarsen(asked, 2, Execution());
+  EXPECT_LT(coarse.mesh.tetrahedra.size(), 1.2 * static_cast<double>(asked));
+  EXPECT_EQ(coarse.mesh.maximumDegree, 0);
+  EXPECT_EQ(coarse.mesh.coefficients.size(), coarse.mesh.tetrahedra.size());
+  ASSERT_EQ(coarse.displacements.size(), 2u);
+  const Eigen::VectorXd coefficients = Eigen::Vector2d(0.8, -1.2);
+  const auto            whole = model.MovePoints(coefficients);
+  const auto            moved = coarse.MovePoints(coefficients);
+  ASSERT_EQ(moved.size(), coarse.mesh.points.size());
+  for (std::size_t i = 0; i < moved.size(); ++i)
+  {
+    const auto at = std::find(model.mean.points.begin(), model.mean.points.end(), coarse.mesh.points[i]);
+    ASSERT_NE(at, model.mean.points.end());
+    EXPECT_LT((moved[i] - whole[static_cast<std::size_t>(at - model.mean.points.begin())]).norm(), 1e-12);
+  }
+  // As fine as it is, and one mode alone.
+  const CoarseModel same = model.Coarsen(model.mean.tetrahedra.size(), 1, Execution());
+  EXPECT_EQ(same.mesh.tetrahedra, model.mean.tetrahedra);
+  EXPECT_EQ(same.mesh.coefficients, model.meanDensities);
+  EXPECT_EQ(same.displacements.size(), 1u);
 }
 } // namespace

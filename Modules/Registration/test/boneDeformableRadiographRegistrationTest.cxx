@@ -239,6 +239,37 @@ TEST(DeformableRadiographRegistration, OneViewNeedsAPrior)
   EXPECT_LT(covariance(1, 1), 4.0 * 1.01);
 }
 
+TEST(DeformableRadiographRegistration, ASurfaceThatMayLieOutsideIsCounted)
+{
+  double deviations[2];
+  double whole = 0.0;
+  double volume = 0.0;
+  for (int i = 0; i < 2; ++i)
+  {
+    auto registration = MakeRegistration();
+    registration->SetSurfaceDeviation(0.4 * i);
+    registration->SetSearchTranslation(0.0);
+    registration->SetSearchRotation(0.0);
+    registration->SetInitialTransform(Truth.ToTransform());
+    registration->Update();
+    deviations[i] = registration->GetResult().regions.back().volumeDeviation;
+    const MeshArrays & mesh = registration->GetResult().mesh;
+    volume = registration->GetResult().regions.back().volume;
+    whole = 0.0;
+    for (const auto & face : BoundaryFaces(mesh))
+    {
+      const Vector3 & a = mesh.points[static_cast<std::size_t>(face[0])];
+      whole += 0.5 * (mesh.points[static_cast<std::size_t>(face[1])] - a)
+                       .cross(mesh.points[static_cast<std::size_t>(face[2])] - a)
+                       .norm();
+    }
+  }
+  // The two modes of shape take up most of a surface of which every point lies 0.4 mm outside.
+  EXPECT_LT(deviations[0], 0.005 * volume);
+  EXPECT_GT(deviations[1], 0.5 * 0.4 * whole);
+  EXPECT_LT(deviations[1], 1.5 * 0.4 * whole);
+}
+
 TEST(DeformableRadiographRegistration, TetrahedraThatCannotBeRepairedAreRefused)
 {
   // Across the whole body: what no mode puts right.

@@ -35,6 +35,32 @@ TEST(ImageGradient, IsExactForLinearImagesAndNothingAtTheBorder)
   }
 }
 
+TEST(ImageGradient, OfABoxIsAsOfTheWholeImage)
+{
+  constexpr int             columns = 20, rows = 16;
+  const bone::ImageGradient gradient(columns, rows, 1.0);
+  std::vector<float>        image, x(columns * rows), y(columns * rows);
+  for (int i = 0; i < columns * rows; ++i)
+  {
+    image.push_back(static_cast<float>(std::sin(0.7 * i) + 0.01 * i * i));
+  }
+  gradient.Apply(image.data(), x.data(), y.data());
+  for (const bone::PixelBox & box : { bone::PixelBox{ { 6, 4 }, { 11, 9 } },
+                                      bone::PixelBox{ { 0, 0 }, { 5, 16 } },
+                                      bone::PixelBox{ { 18, 14 }, { 20, 16 } } })
+  {
+    ASSERT_EQ(box.GetNumberOfPixels(), static_cast<std::size_t>(box.Columns() * box.Rows()));
+    std::vector<float> inX(box.GetNumberOfPixels(), 9.0f), inY(inX);
+    gradient.Apply(image.data(), box, inX.data(), inY.data());
+    for (int i = 0; i < box.Columns() * box.Rows(); ++i)
+    {
+      const int at = (box.first[1] + i / box.Columns()) * columns + box.first[0] + i % box.Columns();
+      EXPECT_EQ(inX[i], x[at]);
+      EXPECT_EQ(inY[i], y[at]);
+    }
+  }
+}
+
 TEST(ImageGradient, OfAWaveIsDampedAsByAGaussian)
 {
   constexpr int             columns = 64, rows = 16;

@@ -56,6 +56,22 @@ TEST(MetricPixels, RefusesOtherSizes)
   EXPECT_THROW(CountedWeights(view, 0), std::invalid_argument);
 }
 
+TEST(MetricPixels, ABoxHoldsAllThatShows)
+{
+  std::vector<float> first(5 * 4, 0.0f), second(first);
+  PixelBox           box = BoxOf({ first.data(), second.data() }, { { 5, 4 } });
+  EXPECT_EQ(box.GetNumberOfPixels(), 0u);
+  first[1 * 5 + 2] = -1.0f;
+  box = BoxOf({ first.data(), second.data() }, { { 5, 4 } });
+  EXPECT_EQ(box.first, (std::array<int, 2>{ 2, 1 }));
+  EXPECT_EQ(box.end, (std::array<int, 2>{ 3, 2 }));
+  second[3 * 5 + 0] = 1.0f;
+  second[3 * 5 + 4] = std::numeric_limits<float>::quiet_NaN();
+  box = BoxOf({ first.data(), second.data() }, { { 5, 4 } });
+  EXPECT_EQ(box.first, (std::array<int, 2>{ 0, 1 }));
+  EXPECT_EQ(box.end, (std::array<int, 2>{ 5, 4 }));
+}
+
 TEST(MetricPixels, GramSumsAreProducts)
 {
   const Eigen::MatrixXf part = Eigen::MatrixXf::Random(6, 3);
