@@ -102,8 +102,8 @@ private:
   Search(const Execution & execution) const
   {
     constexpr int      generations = 100;
-    const double   narrow = getenv("NW")?atof(getenv("NW")):0.05;        // of the box
-    const int      tetrahedra = getenv("ST")?atoi(getenv("ST")):1000;
+    constexpr double   narrow = 0.05;        // of the box
+    constexpr int      tetrahedra = 1000;
     constexpr double   mostDeviations = 4.0; // of a mode of shape
     constexpr double   beyond = 1.25;        // turns about three axes add up
     const Eigen::Index shape = std::min<Eigen::Index>(m_P.searchModes, m_Model.shapeModes);
