@@ -193,9 +193,7 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
 }
 
 std::vector<DeformableTerm>
-DeformableCost::Evaluate(const DeformableState & state,
-                         const Execution &       execution,
-                         std::vector<double> *   ofViews)
+DeformableCost::Evaluate(const DeformableState & state, const Execution & execution)
 {
   const MeshArrays            mesh = m_Model.Synthesize(state.coefficients);
   const auto                  count = static_cast<Eigen::Index>(m_Modes.Count());
@@ -229,10 +227,6 @@ DeformableCost::Evaluate(const DeformableState & state,
   {
     AddShare(totals[i / m_Views.size()], values[i], 1.0 / static_cast<double>(m_Views.size()));
   }
-  for (std::size_t v = 0; v < m_Views.size() && ofViews != nullptr; ++v)
-  {
-    ofViews->push_back(values[v].cost);
-  }
   return totals;
 }
 
@@ -259,7 +253,7 @@ DeformableCost::EvaluateShape(const CoarseModel &     model,
                               const Execution &       execution) const
 {
   const auto images = this->Project(model.MovePoints(state.coefficients), model.mesh, state.pose, execution);
-  double sum = 0.0;
+  double     sum = 0.0;
   for (std::size_t v = 0; v < images.size(); ++v)
   {
     sum += m_Metrics[0][v]->Evaluate(images[v].data()) / static_cast<double>(images.size());

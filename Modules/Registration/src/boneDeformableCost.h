@@ -53,9 +53,9 @@ public:
   UseIntensities(const DeformableState & state, const Execution & execution);
 
   /** The mean over the views of the gradients' cost, and of the line integrals' where they are used, with their
-   * derivatives by the six steps of the pose and the coefficients. `ofViews`: where given, each view's first cost. */
+   * derivatives by the six steps of the pose and the coefficients. */
   std::vector<DeformableTerm>
-  Evaluate(const DeformableState & state, const Execution & execution, std::vector<double> * ofViews = nullptr);
+  Evaluate(const DeformableState & state, const Execution & execution);
 
   /** Of each metric, the second derivatives by all parameters and by how far the outer surface lies outward, mm. */
   std::vector<Eigen::VectorXd>

@@ -143,10 +143,10 @@ DeformableModel::AddRegions(const StatisticalModelContent & atlas)
     return;
   }
   // Mean density of each region, of what is left of each subject.
-  const Eigen::MatrixXd       left = atlas.density.modes * LeaveOneOutResiduals(atlas.density, atlas.densityScores);
-    const Eigen::MatrixXd       volumes = MeasureCells(mean, mean.points, meanDensities);
-  Eigen::VectorXd             sum = Eigen::VectorXd::Zero(volumes.rows());
-  MeshArrays                  rest = mean;
+  const Eigen::MatrixXd left = atlas.density.modes * LeaveOneOutResiduals(atlas.density, atlas.densityScores);
+  const Eigen::MatrixXd volumes = MeasureCells(mean, mean.points, meanDensities);
+  Eigen::VectorXd       sum = Eigen::VectorXd::Zero(volumes.rows());
+  MeshArrays            rest = mean;
   for (Eigen::Index i = 0; i < left.cols(); ++i)
   {
     rest.coefficients.assign(left.col(i).data(), left.col(i).data() + left.rows());

@@ -103,7 +103,7 @@ private:
   {
     constexpr int      generations = 100;
     constexpr double   narrow = 0.05;        // of the box
-    constexpr int      tetrahedra = 1000;
+    constexpr int      tetrahedra = 1000;    // of the simplified mean
     constexpr double   mostDeviations = 4.0; // of a mode of shape
     constexpr double   beyond = 1.25;        // turns about three axes add up
     const Eigen::Index shape = std::min<Eigen::Index>(m_P.searchModes, m_Model.shapeModes);
@@ -260,13 +260,17 @@ private:
                 DeformableRegistrationResult &      result,
                 const Execution &                   execution) const
   {
-    const Posterior posterior = this->MakePosterior(values, at);
+    // Where no view shows the bone and nothing was known of its pose, it may be anywhere.
+    constexpr double      anywhere = 1e4; // mm
+    Posterior             posterior = this->MakePosterior(values, at);
+    const Eigen::VectorXd known = m_Prior.cwiseMax(1.0 / (anywhere * anywhere));
+    posterior.hessian.diagonal() += known - m_Prior;
     result.cost = values[0].cost;
     result.precision = posterior.precisions[0];
     result.intensityPrecision = posterior.precisions.size() > 1 ? posterior.precisions[1] : 0.0;
     const auto      size = posterior.hessian.rows();
     const auto      slopes = cost.SurfaceSlopes(at, execution.Silent());
-    Eigen::MatrixXd errors = m_Prior.asDiagonal();
+    Eigen::MatrixXd errors = known.asDiagonal();
     Eigen::VectorXd ofSurface = Eigen::VectorXd::Zero(size);
     for (std::size_t k = 0; k < values.size(); ++k)
     {
@@ -279,8 +283,8 @@ private:
     result.covariance = this->Bound(inverse * errors * inverse);
   }
 
-  /** A covariance that along no direction is wider than the pose's prior. The atlas' own bounds nothing: it is estimated
-   * from some subjects, and leave-one-out, regions' densities lie outside of it. */
+  /** A covariance that along no direction is wider than the pose's prior. The atlas' own bounds nothing: it is
+   * estimated from some subjects, and leave-one-out, regions' densities lie outside of it. */
   Eigen::MatrixXd
   Bound(const Eigen::MatrixXd & covariance) const
   {

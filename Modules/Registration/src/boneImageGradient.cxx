@@ -58,9 +58,10 @@ ImageGradient::Apply(const float * image, const PixelBox & box, float * x, float
     std::fill(derived.begin(), derived.end(), 0.0f);
     for (int k = -radius; k <= radius; ++k)
     {
-      const float * row = image + static_cast<std::size_t>(r + k) * static_cast<std::size_t>(m_Columns) + first - radius;
-      const float   s = m_Smooth[static_cast<std::size_t>(k + radius)];
-      const float   d = m_Derive[static_cast<std::size_t>(k + radius)];
+      const float * row =
+        image + static_cast<std::size_t>(r + k) * static_cast<std::size_t>(m_Columns) + first - radius;
+      const float s = m_Smooth[static_cast<std::size_t>(k + radius)];
+      const float d = m_Derive[static_cast<std::size_t>(k + radius)];
       for (std::size_t c = 0; c < used; ++c)
       {
         smoothed[c] += s * row[c];

@@ -94,8 +94,9 @@ CountedGradient::Apply(const float * image, const PixelBox & box) const
     {
       const float * weights = &m_Weights[static_cast<std::size_t>(r) * static_cast<std::size_t>(m_Size[0]) +
                                          static_cast<std::size_t>(box.first[0])];
-      at = std::transform(
-        at, at + static_cast<std::ptrdiff_t>(columns), weights, at, [](float d, float w) { return w > 0.0f ? d : 0.0f; });
+      at = std::transform(at, at + static_cast<std::ptrdiff_t>(columns), weights, at, [](float d, float w) {
+        return w > 0.0f ? d : 0.0f;
+      });
     }
   }
   return result;

@@ -206,7 +206,8 @@ struct PatchGradientCorrelation::Data
       auto to = model.begin();
       for (int r = box.first[1]; r < box.end[1]; ++r, from += box.Columns())
       {
-        to = std::transform(from, from + box.Columns(), &this->Weights()[this->PixelAt(box.first[0], r)], to, std::multiplies<>());
+        to = std::transform(
+          from, from + box.Columns(), &this->Weights()[this->PixelAt(box.first[0], r)], to, std::multiplies<>());
       }
       for (Eigen::Index k = 0; k < count; ++k)
       {
@@ -233,11 +234,8 @@ struct PatchGradientCorrelation::Data
 
   /** Adds the products of a component of channel k to the sums of blocks, a row of blocks at a time. */
   void
-  AddProducts(const Channels &           channels,
-              int                        axis,
-              const std::vector<float> & model,
-              Eigen::Index               k,
-              PatchSums &                to) const
+  AddProducts(const Channels & channels, int axis, const std::vector<float> & model, Eigen::Index k, PatchSums & to)
+    const
   {
     const PixelBox &   box = channels.box;
     const int          columns = box.Columns();

@@ -270,6 +270,25 @@ TEST(DeformableRadiographRegistration, ASurfaceThatMayLieOutsideIsCounted)
   EXPECT_LT(deviations[1], 1.5 * 0.4 * whole);
 }
 
+TEST(DeformableRadiographRegistration, ABoneThatNoViewShowsMayBeAnywhere)
+{
+  auto registration = MakeRegistration();
+  registration->SetIntensities(false);
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  registration->SetInitialTransform(PoseOf(0, 0, 500, 0, 0, 0).ToTransform());
+  registration->Update();
+  const DeformableRegistrationResult & result = registration->GetResult();
+  EXPECT_EQ(result.quality, RegistrationQuality::Failed);
+  EXPECT_EQ(result.coefficients.norm(), 0.0);
+  ASSERT_TRUE(result.covariance.allFinite());
+  EXPECT_GT(result.covariance.diagonal().head<3>().minCoeff(), 1e6);
+  for (const Vector3 & deviation : result.pointDeviations)
+  {
+    EXPECT_GT(deviation.minCoeff(), 1e3);
+  }
+}
+
 TEST(DeformableRadiographRegistration, TetrahedraThatCannotBeRepairedAreRefused)
 {
   // Across the whole body: what no mode puts right.
