@@ -2,19 +2,21 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 // boneRegistrationValidation CT MODEL.hierarchy.json: registers a model to X-rays simulated from the whole CT that it
-// was built of, from many starts, and prints a line a start: number, mTRE before and after, the part of it in the first
+// was built of, from many starts, and prints a JSON line a start: mTRE before and after, the part of it in the first
 // view's plane (mm), cost, distinctness, quality (0 ok), seconds by the clock and of the processors, searches, the
 // error of the translation and its standard deviations (mm). mTRE: mean displacement of the first level's points.
 #include <Eigen/Eigenvalues> // in place of that of ITK's own, older Eigen
 
 #include "boneHierarchyIO.h"
 #include "boneImageIO.h"
+#include "boneRayCastRegistration.h"
 #include "boneRigidRegistration.h"
 #include "boneXRaySimulation.h"
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <itkEuler3DTransform.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <ctime>
@@ -34,30 +36,83 @@ struct Trials
   int                       pixels{ 256 };
   double                    translation{ 20 };
   double                    rotation{ 20 };
+  double                    mtre{ 0 };
+  std::array<double, 2>     viewError{}; // mm, degrees
+  int                       rayCasting{ 0 };
+  double                    threshold{ 0 };
   std::uint64_t             seed{ 1 };
   XRaySimulation            simulation;
   RigidRadiographParameters parameters;
 };
 
-/** A pose that is off by up to so much along and about each axis. */
+/** The identity, moved by so much along (mm) and about (degrees) each axis. */
 RigidPose
-DrawStart(const Trials & trials, const Vector3 & centre, std::mt19937_64 & random)
+PoseAt(const Vector3 & centre, const Vector3 & shift, const Vector3 & turn)
 {
-  std::uniform_real_distribution<double> shift(-trials.translation, trials.translation);
-  std::uniform_real_distribution<double> turn(-trials.rotation, trials.rotation);
-  const double                           degree = std::acos(-1.0) / 180.0;
-  auto                                   transform = itk::Euler3DTransform<double>::New();
-  itk::Vector<double, 3>                 translation;
-  std::array<double, 3>                  angles{};
-  for (unsigned int k = 0; k < 3; ++k)
-  {
-    translation[k] = shift(random);
-    angles[k] = degree * turn(random);
-  }
+  const Vector3 radians = std::acos(-1.0) / 180.0 * turn;
+  auto          transform = itk::Euler3DTransform<double>::New();
   transform->SetCenter(itk::Point<double, 3>(centre.data()));
-  transform->SetRotation(angles[0], angles[1], angles[2]);
-  transform->SetTranslation(translation);
+  transform->SetRotation(radians.x(), radians.y(), radians.z());
+  transform->SetTranslation(itk::Vector<double, 3>(shift.data()));
   return RigidPose::FromTransform(*transform);
+}
+
+/** Mean displacement of the points. */
+double
+DisplacementOf(const std::vector<Vector3> & points, const RigidPose & pose)
+{
+  double sum = 0.0;
+  for (const Vector3 & x : points)
+  {
+    sum += (pose.Apply(x) - x).norm();
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/** A pose that is off by up to so much along and about each axis; where an mTRE is given, that pose's motion times what
+ * makes the mTRE uniform from 0 to it (E. B. van de Kraats et al., IEEE Trans Med Imaging 2005). */
+RigidPose
+DrawStart(const Trials & trials, const std::vector<Vector3> & points, const Vector3 & centre, std::mt19937_64 & random)
+{
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Vector3                                shift, turn;
+  for (int k = 0; k < 3; ++k)
+  {
+    shift[k] = trials.translation * unit(random);
+    turn[k] = trials.rotation * unit(random);
+  }
+  if (!(trials.mtre > 0.0))
+  {
+    return PoseAt(centre, shift, turn);
+  }
+  const double wanted = trials.mtre * 0.5 * (1.0 + unit(random));
+  double       factor = 1.0;
+  for (int i = 0; i < 20; ++i) // all but linear
+  {
+    factor *= wanted / DisplacementOf(points, PoseAt(centre, factor * shift, factor * turn));
+  }
+  return PoseAt(centre, factor * shift, factor * turn);
+}
+
+/** The view moved by so many mm in some direction and so many degrees about some axis through `centre`. */
+XRayGeometry::View
+Misplace(const XRayGeometry::View &    view,
+         const std::array<double, 2> & error,
+         const Vector3 &               centre,
+         std::mt19937_64 &             random)
+{
+  std::normal_distribution<double> normal;
+  Vector3                          along, about;
+  for (int k = 0; k < 3; ++k)
+  {
+    along[k] = normal(random);
+    about[k] = normal(random);
+  }
+  const double    radians = error[1] * std::acos(-1.0) / 180.0;
+  const RigidPose motion{ Eigen::AngleAxisd(radians, about.normalized()).toRotationMatrix(),
+                          error[0] * along.normalized(),
+                          centre };
+  return motion.ToModelSpace(view);
 }
 
 void
@@ -87,26 +142,48 @@ Run(const Trials & trials)
                              random));
   }
   const Vector3 depth = views.front().view.detectorU.cross(views.front().view.detectorV).normalized();
+  const std::vector<RadiographView> right = views;
   for (int i = 0; i < trials.count; ++i)
   {
-    const RigidPose    start = DrawStart(trials, centre, random);
-    const auto         clock = std::chrono::steady_clock::now();
-    const std::clock_t ticks = std::clock();
-    const auto         result = RegisterRigid(levels, views, start, trials.parameters, Execution());
-    const double       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-    const double       processor = static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC;
-    double             before = 0, after = 0, plane = 0;
+    const RigidPose start = DrawStart(trials, points, centre, random);
+    for (std::size_t v = 1; v < views.size(); ++v)
+    {
+      views[v].view = Misplace(right[v].view, trials.viewError, centre, random);
+    }
+    const auto              clock = std::chrono::steady_clock::now();
+    const std::clock_t      ticks = std::clock();
+    RigidRegistrationResult result;
+    if (trials.rayCasting > 0)
+    {
+      result.pose = RegisterByRayCasting(ct, views, start, trials.rayCasting, trials.threshold);
+    }
+    else
+    {
+      result = RegisterRigid(levels, views, start, trials.parameters, Execution());
+    }
+    nlohmann::json row;
+    row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    row["processor"] = static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC;
+    double plane = 0;
     for (const Vector3 & x : points)
     {
       const Vector3 d = result.pose.Apply(x) - x;
-      before += share * (start.Apply(x) - x).norm();
-      after += share * d.norm();
       plane += share * (d - depth.dot(d) * depth).norm();
     }
-    std::cout << i << ' ' << before << ' ' << after << ' ' << plane << ' ' << result.cost << ' ' << result.distinctness
-              << ' ' << static_cast<int>(result.quality) << ' ' << seconds << ' ' << processor << ' ' << result.searches
-              << ' ' << result.pose.translation.transpose() << ' '
-              << result.covariance.diagonal().head<3>().cwiseSqrt().transpose() << std::endl;
+    row["before"] = DisplacementOf(points, start);
+    row["after"] = DisplacementOf(points, result.pose);
+    row["plane"] = plane;
+    row["cost"] = result.cost;
+    row["distinctness"] = result.distinctness;
+    row["quality"] = static_cast<int>(result.quality);
+    row["searches"] = result.searches;
+    const Vector3 deviations = result.covariance.diagonal().head<3>().cwiseSqrt();
+    for (int k = 0; k < 3; ++k)
+    {
+      row["translation"].push_back(result.pose.translation[k]);
+      row["deviation"].push_back(deviations[k]);
+    }
+    std::cout << row << std::endl;
   }
 }
 } // namespace
@@ -123,6 +200,12 @@ main(int argc, char * argv[])
   app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
   app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");
   app.add_option("--rotation", trials.rotation, "and so many degrees about each");
+  app.add_option(
+    "--ray-casting", trials.rayCasting, "Pixels of a side of the CT's own radiographs: RegisterByRayCasting");
+  app.add_option("--threshold", trials.threshold, "Of those, HU");
+  app.add_option("--mtre", trials.mtre, "Starts are off by up to this mTRE (mm) in place of that");
+  app.add_option(
+    "--view-error", trials.viewError, "How far views after the first are from where they are said to be: mm, degrees");
   app.add_option("--seed", trials.seed);
   app.add_option("--scatter", trials.simulation.scatterToPrimary, "Scatter-to-primary ratio");
   app.add_option("--photons", trials.simulation.photons, "Of the open beam, a pixel");

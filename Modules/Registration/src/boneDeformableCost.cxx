@@ -7,8 +7,6 @@
 #include "boneOutwardMove.h"
 #include "bonePatchGradientCorrelation.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,57 +45,7 @@ Surroundings(const std::vector<float> & image, const std::array<int, 2> & size, 
   }
   return both;
 }
-
-/** Covariance of the sum of the shares, where blocks of `width` by `width` are independent. */
-Eigen::MatrixXd
-ScatterOf(const MetricValue & value, Eigen::Index width)
-{
-  const Eigen::Index inRow = value.blocksInRow, rows = value.shares.cols() / inRow;
-  const Eigen::Index merged = (inRow + width - 1) / width;
-  Eigen::MatrixXd    sums = Eigen::MatrixXd::Zero(value.shares.rows(), merged * ((rows + width - 1) / width));
-  for (Eigen::Index b = 0; b < value.shares.cols(); ++b)
-  {
-    sums.col(b / inRow / width * merged + b % inRow / width) += value.shares.col(b);
-  }
-  return sums * sums.transpose();
-}
-
-void
-AddShare(DeformableTerm & total, const MetricValue & value, double share)
-{
-  total.cost += share * value.cost;
-  total.gradient += share * value.gradient;
-  total.hessian += share * value.hessian;
-  for (std::size_t k = 0; k < total.scatters.size() && value.shares.cols() > 0; ++k)
-  {
-    total.scatters[k] += share * share * ScatterOf(value, Eigen::Index{ 1 } << k);
-  }
-}
 } // namespace
-
-double
-DeformableTerm::EstimatePrecision() const
-{
-  constexpr double damping = 1e-2;
-  constexpr double least = 1e-9; // of the largest curvature: what the images do not show counts nothing
-  if (!(hessian.diagonal().maxCoeff() > 0.0))
-  {
-    return 0.0;
-  }
-  const Eigen::VectorXd scale =
-    hessian.diagonal().cwiseMax(least * hessian.diagonal().maxCoeff()).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  Eigen::MatrixXd       damped = scaled;
-  damped.diagonal().array() += damping;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
-  const double                       curvature = solver.solve(scaled).trace();
-  double                             largest = 0.0;
-  for (const Eigen::MatrixXd & scatter : scatters)
-  {
-    largest = std::max(largest, solver.solve(scale.asDiagonal() * scatter * scale.asDiagonal()).trace());
-  }
-  return largest > 0.0 ? curvature / largest : 0.0;
-}
 
 DeformableCost::DeformableCost(const DeformableModel &                model,
                                const std::vector<RadiographView> &    views,
@@ -192,18 +140,12 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
   }
 }
 
-std::vector<DeformableTerm>
+std::vector<MetricSum>
 DeformableCost::Evaluate(const DeformableState & state, const Execution & execution)
 {
-  const MeshArrays            mesh = m_Model.Synthesize(state.coefficients);
-  const auto                  count = static_cast<Eigen::Index>(m_Modes.Count());
-  std::vector<DeformableTerm> totals(m_Metrics.size());
-  for (DeformableTerm & total : totals)
-  {
-    total.scatters.fill(Eigen::MatrixXd::Zero(count, count));
-    total.gradient = Eigen::VectorXd::Zero(count);
-    total.hessian = Eigen::MatrixXd::Zero(count, count);
-  }
+  const MeshArrays       mesh = m_Model.Synthesize(state.coefficients);
+  const auto             count = static_cast<Eigen::Index>(m_Modes.Count());
+  std::vector<MetricSum> totals(m_Metrics.size(), MetricSum(count));
   m_Modes.poseCentre = state.pose.centre;
   std::vector<std::vector<float *>> pointers(m_Views.size());
   for (std::size_t v = 0; v < m_Views.size(); ++v)
@@ -225,7 +167,7 @@ DeformableCost::Evaluate(const DeformableState & state, const Execution & execut
   });
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    AddShare(totals[i / m_Views.size()], values[i], 1.0 / static_cast<double>(m_Views.size()));
+    totals[i / m_Views.size()].Add(values[i], 1.0 / static_cast<double>(m_Views.size()));
   }
   return totals;
 }
@@ -239,7 +181,7 @@ DeformableCost::SurfaceSlopes(const DeformableState & state, const Execution & e
   const auto surface = static_cast<Eigen::Index>(m_Modes.Count()) - densities - 1;
   m_Modes.shape.pop_back();
   std::vector<Eigen::VectorXd> slopes;
-  for (const DeformableTerm & value : values)
+  for (const MetricSum & value : values)
   {
     slopes.emplace_back(surface + densities);
     slopes.back() << value.hessian.col(surface).head(surface), value.hessian.col(surface).tail(densities);

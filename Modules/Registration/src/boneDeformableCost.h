@@ -7,10 +7,8 @@
 #include "boneDeformableModel.h"
 #include "boneExecution.h"
 #include "boneMeshDerivatives.h"
-#include "boneRadiographMetric.h"
+#include "boneMetricSum.h"
 #include "boneRigidPose.h"
-
-#include <array>
 
 namespace bone
 {
@@ -19,21 +17,6 @@ struct DeformableState
 {
   RigidPose       pose;
   Eigen::VectorXd coefficients;
-};
-
-/** A metric's cost over all views, and how far its gradient may be off. */
-struct DeformableTerm
-{
-  double          cost{ 0.0 };
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;
-  /** Covariance of the gradient from the scatter of its shares, of blocks alone, of two by two and of four by four. */
-  std::array<Eigen::MatrixXd, 3> scatters;
-
-  /** By how much the cost has to count for its curvature to agree with the scatter: the least of those that the three
-   * sizes of blocks give, as errors may correlate over more than one. */
-  double
-  EstimatePrecision() const;
 };
 
 /** \class DeformableCost
@@ -54,7 +37,7 @@ public:
 
   /** The mean over the views of the gradients' cost, and of the line integrals' where they are used, with their
    * derivatives by the six steps of the pose and the coefficients. */
-  std::vector<DeformableTerm>
+  std::vector<MetricSum>
   Evaluate(const DeformableState & state, const Execution & execution);
 
   /** Of each metric, the second derivatives by all parameters and by how far the outer surface lies outward, mm. */

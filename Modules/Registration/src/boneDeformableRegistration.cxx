@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneDeformableRegistration.h"
 
+#include "boneDamping.h"
 #include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
 #include "boneSymmetricEigen.h"
@@ -177,7 +178,7 @@ private:
     Eigen::MatrixXd     hessian;
   };
   Posterior
-  MakePosterior(const std::vector<DeformableTerm> & values, const DeformableState & at) const
+  MakePosterior(const std::vector<MetricSum> & values, const DeformableState & at) const
   {
     Posterior posterior;
     posterior.gradient = m_Prior.cwiseProduct(this->FromPrior(at));
@@ -193,11 +194,11 @@ private:
 
   /** How much the logarithm of the posterior rises. */
   double
-  Gain(const DeformableState &             at,
-       const std::vector<DeformableTerm> & values,
-       const DeformableState &             next,
-       const std::vector<DeformableTerm> & there,
-       const std::vector<double> &         precisions) const
+  Gain(const DeformableState &        at,
+       const std::vector<MetricSum> & values,
+       const DeformableState &        next,
+       const std::vector<MetricSum> & there,
+       const std::vector<double> &    precisions) const
   {
     double gain = this->PriorCost(at) - this->PriorCost(next);
     for (std::size_t k = 0; k < values.size(); ++k)
@@ -208,7 +209,7 @@ private:
   }
 
   /** Levenberg-Marquardt steps; the costs where they end. */
-  std::vector<DeformableTerm>
+  std::vector<MetricSum>
   Descend(DeformableCost &               cost,
           DeformableState &              at,
           DeformableRegistrationResult & result,
@@ -217,31 +218,21 @@ private:
     constexpr double least = 0.5; // of the logarithm of the posterior, whose own spread is half the parameters' number
     const Execution  silent = execution.Silent();
     auto             values = cost.Evaluate(at, silent);
-    double           damping = 1e-3;
-    int              refusals = 0;
+    Damping          damping;
     result.converged = false;
     for (int i = 0; i < m_P.iterations && !result.converged; ++i)
     {
-      const Posterior posterior = this->MakePosterior(values, at);
-      Eigen::MatrixXd hessian = posterior.hessian;
-      hessian.diagonal() *= 1.0 + damping;
-      hessian.diagonal().array() += std::numeric_limits<double>::min();
-      const DeformableState next = Moved(at, -hessian.ldlt().solve(posterior.gradient));
+      const Posterior       posterior = this->MakePosterior(values, at);
+      const DeformableState next = Moved(at, -damping.Damp(posterior.hessian).ldlt().solve(posterior.gradient));
       auto                  there = cost.Evaluate(next, silent);
       const double          gain = this->Gain(at, values, next, there, posterior.precisions);
       if (gain > 0.0)
       {
         at = next;
         values = std::move(there);
-        damping = std::max(1e-6, 0.2 * damping);
-        refusals = 0;
       }
-      else
-      {
-        damping = std::max(0.1, 10.0 * damping);
-        ++refusals;
-      }
-      result.converged = refusals == 2 || (gain > 0.0 && gain < least);
+      damping.Tell(gain > 0.0);
+      result.converged = damping.IsStuck() || (gain > 0.0 && gain < least);
       if (m_Observe)
       {
         m_Observe(at.coefficients, values[0].cost);
@@ -254,11 +245,11 @@ private:
   /** The covariance of the maximum of the posterior about the truth: of the errors of the costs' gradients, of what the
    * prior pulls, and of a surface that lies outside the bone's as a whole. */
   void
-  SetCovariance(DeformableCost &                    cost,
-                const DeformableState &             at,
-                const std::vector<DeformableTerm> & values,
-                DeformableRegistrationResult &      result,
-                const Execution &                   execution) const
+  SetCovariance(DeformableCost &               cost,
+                const DeformableState &        at,
+                const std::vector<MetricSum> & values,
+                DeformableRegistrationResult & result,
+                const Execution &              execution) const
   {
     // Where no view shows the bone and nothing was known of its pose, it may be anywhere.
     constexpr double      anywhere = 1e4; // mm

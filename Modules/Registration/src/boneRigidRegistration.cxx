@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneRigidRegistration.h"
 
+#include "boneDamping.h"
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
 #include "boneMeanDensities.h"
@@ -220,17 +221,13 @@ private:
   {
     constexpr double shortest = 0.01; // mm
     constexpr double least = 1e-4;    // of the cost, which kinks at the projected edges make as rough as that
-    constexpr int    mostRefusals = 2;
     MetricValue      value = cost.EvaluateDerivatives(at.pose, execution.Silent());
-    double           damping = 1e-3;
-    int              refusals = 0;
+    Damping          damping;
     at.cost = value.cost;
     at.converged = false;
     for (int i = 0; i < m_P.iterations && !at.converged; ++i)
     {
-      Matrix6 damped = value.hessian;
-      damped.diagonal() *= 1.0 + damping;
-      damped.diagonal().array() += 1e-12 * value.hessian.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+      const Matrix6     damped = damping.Damp(Matrix6(value.hessian), 1e-12 * value.hessian.diagonal().maxCoeff());
       const RigidPose   next = this->Bound(at.pose.Moved(-damped.ldlt().solve(value.gradient)));
       const double      length = this->Length(at.pose.StepTo(next));
       const MetricValue there = cost.EvaluateDerivatives(next, execution.Silent());
@@ -240,15 +237,9 @@ private:
         at.pose = next;
         at.cost = there.cost;
         value = there;
-        damping = std::max(1e-6, 0.2 * damping);
-        refusals = 0;
       }
-      else
-      {
-        damping = std::max(0.1, 10.0 * damping);
-        ++refusals;
-      }
-      at.converged = length < shortest || refusals == mostRefusals || (gain > 0.0 && gain < least);
+      damping.Tell(gain > 0.0);
+      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < least);
       if (m_Observe)
       {
         m_Observe(at.pose, at.cost);
