@@ -66,26 +66,18 @@ public:
   }
 
 private:
-  /** The interpolator takes the volume's middle for the origin, and its axes for the world's. */
+  /** Turned about the image's origin to its own axes: the interpolator ignores its direction. */
   itk::Point<double, 3>
   ToVolume(const Vector3 & x) const
   {
-    const auto                      region = ct->GetBufferedRegion();
-    itk::ContinuousIndex<double, 3> middle;
-    for (unsigned int k = 0; k < 3; ++k)
-    {
-      middle[k] = region.GetIndex(k) + 0.5 * (static_cast<double>(region.GetSize(k)) - 1.0);
-    }
-    itk::Point<double, 3> centre;
-    ct->TransformContinuousIndexToPhysicalPoint(middle, centre);
+    const auto            origin = ct->GetOrigin();
     const auto            direction = ct->GetDirection();
-    itk::Point<double, 3> local;
+    itk::Point<double, 3> local = origin;
     for (unsigned int k = 0; k < 3; ++k)
     {
-      local[k] = 0.0;
       for (unsigned int i = 0; i < 3; ++i)
       {
-        local[k] += direction[i][k] * (x[i] - centre[i]);
+        local[k] += direction[i][k] * (x[i] - origin[i]);
       }
     }
     return local;

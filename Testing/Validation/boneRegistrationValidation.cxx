@@ -1,10 +1,11 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// boneRegistrationValidation CT MODEL.hierarchy.json: registers a model to X-rays simulated from the whole CT that it
-// was built of, from many starts, and prints a JSON line a start: mTRE before and after, the part of it in the first
-// view's plane (mm), cost, distinctness, quality (0 ok), seconds by the clock and of the processors, searches, the
-// error of the translation and its standard deviations (mm). mTRE: mean displacement of the first level's points.
+// boneRegistrationValidation CT MODEL.hierarchy.json...: registers models to X-rays simulated from the whole CT that
+// they were built of, from many starts, and prints a JSON line a start: mTRE before and after, the part of it in the
+// first view's plane (mm), cost, distinctness, quality (0 ok), seconds by the clock and of the processors, searches,
+// the error of the translation and its standard deviations (mm), and the same of the other models. mTRE: mean
+// displacement of the first level's points.
 #include <Eigen/Eigenvalues> // in place of that of ITK's own, older Eigen
 
 #include "boneHierarchyIO.h"
@@ -30,7 +31,7 @@ using namespace bone;
 struct Trials
 {
   std::string               ct;
-  std::string               model;
+  std::vector<std::string>  models;
   std::vector<double>       angles{ 0, 90 };
   int                       count{ 10 };
   int                       pixels{ 256 };
@@ -38,6 +39,7 @@ struct Trials
   double                    rotation{ 20 };
   double                    mtre{ 0 };
   std::array<double, 2>     viewError{}; // mm, degrees
+  bool                      alone{ false };
   int                       rayCasting{ 0 };
   double                    threshold{ 0 };
   std::uint64_t             seed{ 1 };
@@ -115,31 +117,91 @@ Misplace(const XRayGeometry::View &    view,
   return motion.ToModelSpace(view);
 }
 
-void
-Run(const Trials & trials)
+std::vector<MeshArrays>
+ReadLevels(const std::string & path)
 {
-  const auto              ct = ReadCT(trials.ct);
-  const auto              hierarchy = ReadHierarchy(trials.model);
+  const auto              hierarchy = ReadHierarchy(path);
   std::vector<MeshArrays> levels;
   for (std::size_t i = 0; i < hierarchy->GetNumberOfLevels(); ++i)
   {
     levels.push_back(hierarchy->GetMesh(i)->GetArrays());
   }
-  const auto & points = levels.front().points;
-  const double share = 1.0 / static_cast<double>(points.size());
+  return levels;
+}
+
+/** What came of a body whose true pose is the identity; `depth`: along the first view's axis. */
+nlohmann::json
+Describe(const RigidRegistrationResult & result, const std::vector<Vector3> & points, const Vector3 & depth)
+{
+  double plane = 0.0;
+  for (const Vector3 & x : points)
+  {
+    const Vector3 d = result.pose.Apply(x) - x;
+    plane += (d - depth.dot(d) * depth).norm() / static_cast<double>(points.size());
+  }
+  nlohmann::json row{ { "after", DisplacementOf(points, result.pose) },
+                      { "plane", plane },
+                      { "cost", result.cost },
+                      { "distinctness", result.distinctness },
+                      { "quality", static_cast<int>(result.quality) },
+                      { "searches", result.searches } };
+  const Vector3  deviations = result.covariance.diagonal().head<3>().cwiseSqrt();
+  for (int k = 0; k < 3; ++k)
+  {
+    row["translation"].push_back(result.pose.translation[k]);
+    row["deviation"].push_back(deviations[k]);
+  }
+  return row;
+}
+
+std::vector<RigidRegistrationResult>
+Register(const Trials &                               trials,
+         const CTImage *                              ct,
+         const std::vector<std::vector<MeshArrays>> & models,
+         const std::vector<RadiographView> &          views,
+         const RigidPose &                            start)
+{
+  if (trials.rayCasting > 0)
+  {
+    RigidRegistrationResult result;
+    result.pose = RegisterByRayCasting(ct, views, start, trials.rayCasting, trials.threshold);
+    return { result };
+  }
+  if (trials.alone)
+  {
+    std::vector<RigidRegistrationResult> results;
+    for (const auto & levels : models)
+    {
+      results.push_back(RegisterRigid(levels, views, start, trials.parameters, Execution()));
+    }
+    return results;
+  }
+  return RegisterRigidBodies(models, views, start, trials.parameters, Execution()).bodies;
+}
+
+void
+Run(const Trials & trials)
+{
+  const auto                           ct = ReadCT(trials.ct);
+  std::vector<std::vector<MeshArrays>> models;
+  std::vector<Vector3>                 all;
+  for (const std::string & path : trials.models)
+  {
+    models.push_back(ReadLevels(path));
+    all.insert(all.end(), models.back().front().points.begin(), models.back().front().points.end());
+  }
+  const auto & points = models.front().front().points;
   Vector3      centre = Vector3::Zero();
   for (const Vector3 & x : points)
   {
-    centre += share * x;
+    centre += x / static_cast<double>(points.size());
   }
   std::mt19937_64             random(trials.seed);
   std::vector<RadiographView> views;
   for (const double angle : trials.angles)
   {
-    views.push_back(Simulate(ct,
-                             MakeView(levels.front().points, Vector3::UnitY(), Vector3::UnitZ(), angle, trials.pixels),
-                             trials.simulation,
-                             random));
+    const auto view = MakeView(all, Vector3::UnitY(), Vector3::UnitZ(), angle, trials.pixels);
+    views.push_back(Simulate(ct, view, trials.simulation, random));
   }
   const Vector3 depth = views.front().view.detectorU.cross(views.front().view.detectorV).normalized();
   const std::vector<RadiographView> right = views;
@@ -150,38 +212,17 @@ Run(const Trials & trials)
     {
       views[v].view = Misplace(right[v].view, trials.viewError, centre, random);
     }
-    const auto              clock = std::chrono::steady_clock::now();
-    const std::clock_t      ticks = std::clock();
-    RigidRegistrationResult result;
-    if (trials.rayCasting > 0)
-    {
-      result.pose = RegisterByRayCasting(ct, views, start, trials.rayCasting, trials.threshold);
-    }
-    else
-    {
-      result = RegisterRigid(levels, views, start, trials.parameters, Execution());
-    }
-    nlohmann::json row;
-    row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    const auto         clock = std::chrono::steady_clock::now();
+    const std::clock_t ticks = std::clock();
+    const auto         results = Register(trials, ct, models, views, start);
+    const double       seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    auto               row = Describe(results.front(), points, depth);
+    row["seconds"] = seconds;
     row["processor"] = static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC;
-    double plane = 0;
-    for (const Vector3 & x : points)
-    {
-      const Vector3 d = result.pose.Apply(x) - x;
-      plane += share * (d - depth.dot(d) * depth).norm();
-    }
     row["before"] = DisplacementOf(points, start);
-    row["after"] = DisplacementOf(points, result.pose);
-    row["plane"] = plane;
-    row["cost"] = result.cost;
-    row["distinctness"] = result.distinctness;
-    row["quality"] = static_cast<int>(result.quality);
-    row["searches"] = result.searches;
-    const Vector3 deviations = result.covariance.diagonal().head<3>().cwiseSqrt();
-    for (int k = 0; k < 3; ++k)
+    for (std::size_t b = 1; b < results.size(); ++b)
     {
-      row["translation"].push_back(result.pose.translation[k]);
-      row["deviation"].push_back(deviations[k]);
+      row["others"].push_back(Describe(results[b], models[b].front().points, depth));
     }
     std::cout << row << std::endl;
   }
@@ -194,18 +235,21 @@ main(int argc, char * argv[])
   Trials   trials;
   CLI::App app("Rigid registration to simulated X-rays from many starts");
   app.add_option("ct", trials.ct)->required();
-  app.add_option("model", trials.model)->required();
+  app.add_option("models", trials.models, "Several: registered together")->required();
   app.add_option("--angles", trials.angles, "Of the views about z from the front, degrees");
   app.add_option("--count", trials.count, "Starts");
   app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
   app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");
   app.add_option("--rotation", trials.rotation, "and so many degrees about each");
+  app.add_flag("--alone", trials.alone, "Each model by itself");
   app.add_option(
     "--ray-casting", trials.rayCasting, "Pixels of a side of the CT's own radiographs: RegisterByRayCasting");
   app.add_option("--threshold", trials.threshold, "Of those, HU");
   app.add_option("--mtre", trials.mtre, "Starts are off by up to this mTRE (mm) in place of that");
   app.add_option(
     "--view-error", trials.viewError, "How far views after the first are from where they are said to be: mm, degrees");
+  app.add_option("--view-translation-deviation", trials.parameters.viewTranslationDeviation);
+  app.add_option("--view-rotation-deviation", trials.parameters.viewRotationDeviation);
   app.add_option("--seed", trials.seed);
   app.add_option("--scatter", trials.simulation.scatterToPrimary, "Scatter-to-primary ratio");
   app.add_option("--photons", trials.simulation.photons, "Of the open beam, a pixel");

@@ -32,6 +32,11 @@ namespace bone
     "Standard deviation of how far the model's surface lies outside the bone's as a whole; goes into the covariance") \
   value(double, cutLength, CutLength, 25.0, ParameterRange::LengthOrZero(), "mm", "cut-length", \
     "Where the bone leaves the CT and the model ends in a flat cut, its density fades to nothing over this length") \
+  value(double, viewTranslationDeviation, ViewTranslationDeviation, 0.0, ParameterRange::LengthOrZero(), "mm", \
+    "view-translation-deviation", \
+    "Standard deviation, along each axis, of where views after the first lie from where their geometry says; their motions are found along with the pose. 0, and ViewRotationDeviation 0 too: geometries are exact") \
+  value(double, viewRotationDeviation, ViewRotationDeviation, 0.0, ParameterRange::Between(0.0, 30.0), "degrees", \
+    "view-rotation-deviation", "The same of how views after the first are turned, about each axis") \
   value(int, seed, Seed, 1, ParameterRange::Between(0, 1e9), "", "seed", "Seed of the search's random numbers")
 // clang-format on
 

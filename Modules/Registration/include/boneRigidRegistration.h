@@ -46,23 +46,67 @@ struct RigidRegistrationResult
   int    searches{ 0 };
 };
 
-/** \brief Finds the pose of a density model in X-rays (paper 7).
+/** \brief Sets cost, costs of the views, distinctness and quality of the pose that `result` has, for a model whose
+ * radiographs are as in the last step of RegisterRigid. */
+void
+JudgePose(const MeshArrays &                  model,
+          const std::vector<RadiographView> & views,
+          const RigidRadiographParameters &   parameters,
+          const Execution &                   execution,
+          RigidRegistrationResult &           result);
+
+/** \struct ViewCorrection
+ * \brief Where source and detector of a view are, from where its geometry says they are. */
+struct ViewCorrection
+{
+  /** What bodies have to be moved by, in the geometry's space, to look in the stated view as they do in the true one:
+   * motion.ToModelSpace(stated) is the true view. Its centre is the mean of the bodies'. */
+  RigidPose motion;
+  /** Of translation (mm) and rotation vector (radians) of `motion`, along the geometry's axes. */
+  Eigen::Matrix<double, 6, 6> covariance{ Eigen::Matrix<double, 6, 6>::Zero() };
+};
+
+/** \struct RigidBundleResult
+ * \brief What comes of a rigid registration of several bodies. */
+struct RigidBundleResult
+{
+  std::vector<RigidRegistrationResult> bodies;
+  /** Of each view; the first view's is the identity, as are all where geometries are taken to be exact. */
+  std::vector<ViewCorrection> views;
+};
+
+/** \brief Finds the poses of density models in X-rays that show all of them (paper 7).
  *
- * `levels` are the model from fine to coarse, all with a density; `views` the X-rays. From `initial`, evolution
- * strategies search the box of SearchTranslation and SearchRotation with the coarsest level on small images. The pose
- * found is refined by Levenberg-Marquardt steps on finer and finer levels and images. Where it is not distinct, the
- * search begins again with other random numbers; the best of all is the result. The cost is
- * PatchGradientCorrelation's.
+ * `bodies` are the levels of each model from fine to coarse, all with a density; `views` the X-rays. A bone that leaves
+ * the CT ends in a flat cut, of which X-rays show nothing: the model's density fades towards it over CutLength.
  *
- * A bone that leaves the CT ends in a flat cut, of which X-rays show nothing: the model's density fades towards it over
- * CutLength.
+ * 1. Each body by itself: from `initial`, evolution strategies search the box of SearchTranslation and SearchRotation
+ *    with the coarsest level on small images. The pose found is refined by Levenberg-Marquardt steps on finer and finer
+ *    levels and images. Where it is not distinct, the search begins again with other random numbers, until three
+ *    searches found the same pose or Searches are done; the best of all is the result. The cost is
+ *    PatchGradientCorrelation's.
+ * 2. All bodies that did not fail together, on the finest level and image (a bundle adjustment: B. Triggs et al.,
+ * Vision Algorithms, 2000): their poses; how far each body's surface lies outside of its model's as a whole, normal
+ * with SurfaceDeviation beforehand, which one view cannot tell from depth; and, where ViewTranslationDeviation or
+ *    ViewRotationDeviation is not 0, the motions of all views but the first, normal with these deviations. Poses then
+ *    refer to the first view. Radiographs show all bodies: what one casts is no clutter to another. The cost counts
+ *    against what is known beforehand by the ratio of its curvature to the scatter of its gradient.
  *
  * The covariance is that of the minimum of a sum of many patches' costs, from what these contribute to its gradient
- * (the "sandwich" of P. J. Huber, 1967), which needs no model of the noise; and that of a surface that lies a little
- * outside of the bone's or within it, which one view cannot tell from depth.
+ * (the "sandwich" of P. J. Huber, 1967), which needs no model of the noise.
  *
- * The same result for any number of threads. `observe` is called after each step of the refinement with the pose and
- * its cost. Throws std::invalid_argument where a view cannot be used, with its number. */
+ * The same result for any number of threads. `observe` is called after each step of the refinements with the pose (in
+ * the second part, that of the first body) and its cost. Throws std::invalid_argument where a view cannot be used, with
+ * its number. */
+RigidBundleResult
+RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodies,
+                    const std::vector<RadiographView> &                    views,
+                    const RigidPose &                                      initial,
+                    const RigidRadiographParameters &                      parameters,
+                    const Execution &                                      execution,
+                    const std::function<void(const RigidPose &, double)> & observe = {});
+
+/** \brief The same of one body. */
 RigidRegistrationResult
 RegisterRigid(const std::vector<MeshArrays> &                        levels,
               const std::vector<RadiographView> &                    views,

@@ -3,308 +3,74 @@
  *=========================================================================*/
 #include "boneRigidRegistration.h"
 
-#include "boneDamping.h"
-#include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
-#include "boneMeanDensities.h"
-#include "boneOutwardMove.h"
-#include "bonePatchGradientCorrelation.h"
-#include "bonePrincipalModes.h"
-#include "boneRigidCost.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
+#include "boneRigidBundle.h"
+#include "boneRigidSearch.h"
 
 namespace bone
 {
 namespace
 {
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-/** Images' longer side and the model's level, from coarse to fine. */
-struct Resolution
+/** The levels with a density that fades to where the bone leaves the CT. */
+std::vector<MeshArrays>
+FadeFlatCuts(std::vector<MeshArrays> levels, const RigidRadiographParameters & parameters)
 {
-  int         pixels;
-  std::size_t level;
-};
-
-std::vector<Resolution>
-MakeResolutions(const RigidRadiographParameters & parameters, std::size_t levels)
-{
-  std::vector<Resolution> resolutions;
-  for (int pixels = parameters.searchPixels; pixels < parameters.pixels; pixels *= 2)
+  const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
+  for (MeshArrays & level : levels)
   {
-    resolutions.push_back({ pixels, 0 });
+    if (!cuts.empty() && parameters.cutLength > 0.0)
+    {
+      FadeToCuts(level, cuts, parameters.cutLength);
+    }
   }
-  resolutions.push_back({ parameters.pixels, 0 });
-  for (std::size_t s = 0; s < resolutions.size(); ++s)
-  {
-    resolutions[s].level = levels - 1 - std::min(levels - 1, s);
-  }
-  resolutions.back().level = 0;
-  return resolutions;
+  return levels;
 }
-
-Vector3
-CentreOf(const MeshArrays & mesh)
-{
-  const Vector3 sum = std::accumulate(mesh.points.begin(), mesh.points.end(), Vector3(Vector3::Zero()));
-  return sum / static_cast<double>(mesh.points.size());
-}
-
-/** A level made ready for radiographs. */
-struct ProjectedLevel
-{
-  const MeshArrays & mesh;
-  ProjectionModel    model;
-
-  ProjectedLevel(const MeshArrays & arrays, const Execution & execution)
-    : mesh(arrays)
-    , model(arrays.points, arrays, MeshRadiographParameters{}, execution)
-  {}
-};
-
-class RigidSearch
-{
-public:
-  RigidSearch(const std::vector<MeshArrays> &                        levels,
-              const std::vector<RadiographView> &                    views,
-              const RigidPose &                                      initial,
-              const RigidRadiographParameters &                      parameters,
-              const std::function<void(const RigidPose &, double)> & observe)
-    : m_P(parameters)
-    , m_Views(views)
-    , m_Observe(observe)
-    , m_Initial(initial.About(CentreOf(levels.front())))
-    , m_Resolutions(MakeResolutions(parameters, levels.size()))
-    , m_Surface(OutwardMove(levels.front()))
-    , m_Means(WithMeanDensities(levels[m_Resolutions.front().level]))
-  {
-    double squares = 0.0;
-    for (const Vector3 & x : levels.front().points)
-    {
-      squares += (x - m_Initial.centre).squaredNorm();
-    }
-    // Root mean square of what a turn of one radian moves the points by.
-    m_Radius = std::sqrt(2.0 / 3.0 * squares / static_cast<double>(levels.front().points.size()));
-    // A start's turns about three axes add up to more than the largest about one.
-    constexpr double beyond = 1.25;
-    m_Box << Vector3::Constant(beyond * m_P.searchTranslation),
-      Vector3::Constant(beyond * m_P.searchRotation * std::acos(-1.0) / 180.0);
-    m_IsSearched = m_Box.minCoeff() > 0.0 || m_Box.maxCoeff() > 0.0;
-    for (const MeshArrays & level : levels)
-    {
-      m_Levels.push_back(std::make_unique<ProjectedLevel>(level, Execution().Silent()));
-    }
-    for (const Resolution & resolution : m_Resolutions)
-    {
-      m_Costs.push_back(this->MakeCost(resolution.pixels, *m_Levels[resolution.level]));
-    }
-  }
-
-  RigidRegistrationResult
-  Run(const Execution & execution) const
-  {
-    RigidRegistrationResult best;
-    best.cost = std::numeric_limits<double>::infinity();
-    const int searches = m_IsSearched ? m_P.searches : 1;
-    for (int search = 0; search < searches && best.quality != RegistrationQuality::Ok; ++search)
-    {
-      const Execution         part = execution.Part(static_cast<double>(search) / searches, (search + 1.0) / searches);
-      const RigidPose         start = m_IsSearched ? this->Search(search, part.Part(0.0, 0.7)) : m_Initial;
-      RigidRegistrationResult result = this->Refine(start, part.Part(0.7, 1.0));
-      if (result.cost < best.cost)
-      {
-        best = result;
-      }
-      best.searches = search + 1;
-    }
-    this->SetCovariance(best, execution.Silent());
-    execution.Report(1.0);
-    return best;
-  }
-
-private:
-  std::unique_ptr<const RigidCost>
-  MakeCost(int pixels, const ProjectedLevel & level) const
-  {
-    std::vector<RadiographView> reduced;
-    for (const RadiographView & view : m_Views)
-    {
-      reduced.push_back(ReduceView(view, ReductionTo(view.view, pixels)));
-    }
-    return std::make_unique<const RigidCost>(level.mesh, level.model, reduced, [this](const RadiographView & view) {
-      return std::make_unique<PatchGradientCorrelation>(view, m_P.patch, m_P.sigma);
-    });
-  }
-
-  /** How far a step moves the model's points, root mean square, mm. */
-  double
-  Length(const Vector6 & step) const
-  {
-    return std::sqrt(step.head<3>().squaredNorm() + m_Radius * m_Radius * step.tail<3>().squaredNorm());
-  }
-
-  /** The pose at these coordinates of the box: translation from the start along the geometry's axes, rotation vector in
-   * the model's, each in units of half the box. */
-  RigidPose
-  FromBox(const Vector6 & coordinates) const
-  {
-    const Vector6 step = coordinates.cwiseProduct(m_Box);
-    RigidPose     pose = m_Initial.Moved((Vector6() << Vector3::Zero(), step.tail<3>()).finished());
-    pose.translation += step.head<3>();
-    return pose;
-  }
-
-  /** The pose in the box that is nearest to this one, by coordinates. */
-  RigidPose
-  Bound(const RigidPose & pose) const
-  {
-    if (!m_IsSearched)
-    {
-      return pose;
-    }
-    Vector6 step = m_Initial.StepTo(pose);
-    step.head<3>() = pose.translation - m_Initial.translation;
-    const Vector6 inside = step.cwiseMin(m_Box).cwiseMax(-m_Box);
-    return inside == step ? pose : this->FromBox(inside.cwiseQuotient(m_Box.cwiseMax(1e-30)));
-  }
-
-  RigidPose
-  Search(int search, const Execution & execution) const
-  {
-    constexpr int        generations = 100;
-    constexpr double     narrow = 0.01; // of the box
-    const ProjectedLevel level(m_Means, execution.Silent());
-    const auto           cost = this->MakeCost(m_Resolutions.front().pixels, level);
-    const auto           seed = static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search);
-    // From the start, and, where that led astray, from elsewhere and with more poses.
-    const Vector6     mean = search == 0 ? Vector6(Vector6::Zero()) : Vector6(0.4 * SampleCoefficients(6, seed));
-    EvolutionStrategy strategy(mean.cwiseMin(1.0).cwiseMax(-1.0), 0.4, m_P.population * (2 + search) / 2, seed);
-    while (strategy.GetGeneration() < generations && !strategy.IsConverged(narrow))
-    {
-      const Eigen::MatrixXd & candidates = strategy.Ask();
-      Eigen::VectorXd         costs(candidates.cols());
-      execution.Silent().For(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        costs[k] = cost->Evaluate(this->FromBox(candidates.col(k)), execution.Silent());
-      });
-      strategy.Tell(costs);
-      execution.Report(static_cast<double>(strategy.GetGeneration()) / generations);
-    }
-    return this->FromBox(strategy.BestCandidate());
-  }
-
-  RigidRegistrationResult
-  Refine(const RigidPose & start, const Execution & execution) const
-  {
-    RigidRegistrationResult result;
-    result.pose = start;
-    for (std::size_t s = 0; s < m_Costs.size(); ++s)
-    {
-      const auto share = 1.0 / static_cast<double>(m_Costs.size());
-      this->Descend(*m_Costs[s], result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
-    }
-    this->Judge(result, execution.Silent());
-    return result;
-  }
-
-  /** Levenberg-Marquardt steps within the box. */
-  void
-  Descend(const RigidCost & cost, RigidRegistrationResult & at, const Execution & execution) const
-  {
-    constexpr double shortest = 0.01; // mm
-    constexpr double least = 1e-4;    // of the cost, which kinks at the projected edges make as rough as that
-    MetricValue      value = cost.EvaluateDerivatives(at.pose, execution.Silent());
-    Damping          damping;
-    at.cost = value.cost;
-    at.converged = false;
-    for (int i = 0; i < m_P.iterations && !at.converged; ++i)
-    {
-      const Matrix6     damped = damping.Damp(Matrix6(value.hessian), 1e-12 * value.hessian.diagonal().maxCoeff());
-      const RigidPose   next = this->Bound(at.pose.Moved(-damped.ldlt().solve(value.gradient)));
-      const double      length = this->Length(at.pose.StepTo(next));
-      const MetricValue there = cost.EvaluateDerivatives(next, execution.Silent());
-      const double      gain = at.cost - there.cost;
-      if (gain > 0.0)
-      {
-        at.pose = next;
-        at.cost = there.cost;
-        value = there;
-      }
-      damping.Tell(gain > 0.0);
-      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < least);
-      if (m_Observe)
-      {
-        m_Observe(at.pose, at.cost);
-      }
-      execution.Report((i + 1.0) / m_P.iterations);
-    }
-  }
-
-  void
-  Judge(RigidRegistrationResult & result, const Execution & execution) const
-  {
-    constexpr double       away = 8.0; // mm
-    constexpr double       ofTrue = 0.45;
-    constexpr double       ofWrong = 0.3;
-    const RigidCost &      cost = *m_Costs.back();
-    std::array<double, 12> costs;
-    execution.Silent().For(costs.size(), [&](std::size_t k) {
-      Vector6 step = Vector6::Zero();
-      step[static_cast<Eigen::Index>(k / 2)] = (k % 2 == 0 ? away : -away) / (k < 6 ? 1.0 : m_Radius);
-      costs[k] = cost.Evaluate(result.pose.Moved(step), execution.Silent());
-    });
-    result.cost = cost.Evaluate(result.pose, execution.Silent(), &result.costs);
-    const double mean = std::accumulate(costs.begin(), costs.end(), 0.0) / static_cast<double>(costs.size());
-    result.distinctness = result.cost > 0.0 ? mean / result.cost - 1.0 : std::numeric_limits<double>::max();
-    result.quality = result.distinctness >= ofTrue    ? RegistrationQuality::Ok
-                     : result.distinctness >= ofWrong ? RegistrationQuality::Suspect
-                                                      : RegistrationQuality::Failed;
-  }
-
-  void
-  SetCovariance(RigidRegistrationResult & result, const Execution & execution) const
-  {
-    const MetricValue value = m_Costs.back()->EvaluateDerivatives(result.pose, execution, { m_Surface });
-    Matrix6           hessian = value.hessian.topLeftCorner<6, 6>();
-    if (!(hessian.diagonal().maxCoeff() > 0.0))
-    {
-      // No view shows the model: nothing is known.
-      constexpr double anywhere = 1e4; // mm
-      result.covariance = anywhere * anywhere * Matrix6::Identity();
-      return;
-    }
-    hessian.diagonal().array() += 1e-12 * hessian.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-    const Eigen::LDLT<Matrix6> solver(hessian);
-    const Eigen::MatrixXd      ofShares = solver.solve(value.shares.topRows<6>());
-    const Vector6              ofSurface = solver.solve(m_P.surfaceDeviation * value.hessian.col(6).head<6>());
-    Matrix6                    turn = Matrix6::Zero();
-    turn.topLeftCorner<3, 3>() = result.pose.rotation;
-    turn.bottomRightCorner<3, 3>() = result.pose.rotation;
-    result.covariance = turn * (ofShares * ofShares.transpose() + ofSurface * ofSurface.transpose()) * turn.transpose();
-  }
-
-  const RigidRadiographParameters &                      m_P;
-  const std::vector<RadiographView> &                    m_Views;
-  const std::function<void(const RigidPose &, double)> & m_Observe;
-  RigidPose                                              m_Initial;
-  std::vector<Resolution>                                m_Resolutions;
-  std::vector<Vector3>                                   m_Surface;
-  MeshArrays                                             m_Means;
-  double                                                 m_Radius{ 1.0 };
-  Vector6                                                m_Box;
-  bool                                                   m_IsSearched{ false };
-  std::vector<std::unique_ptr<const ProjectedLevel>>     m_Levels;
-  std::vector<std::unique_ptr<const RigidCost>>          m_Costs;
-};
 } // namespace
+
+RigidBundleResult
+RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodies,
+                    const std::vector<RadiographView> &                    views,
+                    const RigidPose &                                      initial,
+                    const RigidRadiographParameters &                      parameters,
+                    const Execution &                                      execution,
+                    const std::function<void(const RigidPose &, double)> & observe)
+{
+  constexpr double         searched = 0.8; // of the time
+  const auto               share = searched / static_cast<double>(bodies.size());
+  RigidBundleResult        result;
+  std::vector<MeshArrays>  models;
+  std::vector<std::size_t> found;
+  result.views.resize(views.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+  {
+    const Execution part = execution.Part(share * static_cast<double>(b), share * (static_cast<double>(b) + 1.0));
+    auto            levels = FadeFlatCuts(bodies[b], parameters);
+    result.bodies.push_back(SearchRigid(levels, views, initial, parameters, part, observe));
+    models.push_back(std::move(levels.front()));
+    if (result.bodies.back().quality != RegistrationQuality::Failed)
+    {
+      found.push_back(b);
+    }
+  }
+  if (!found.empty())
+  {
+    AdjustRigidBundle(models, found, views, parameters, execution.Part(searched, 1.0), observe, result);
+  }
+  // Those that are likely wrong would only mislead the others.
+  RigidRadiographParameters exact = parameters;
+  exact.viewTranslationDeviation = exact.viewRotationDeviation = 0.0;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+  {
+    if (result.bodies[b].quality == RegistrationQuality::Failed)
+    {
+      RigidBundleResult alone = result;
+      AdjustRigidBundle(models, { b }, views, exact, execution.Silent(), observe, alone);
+      result.bodies[b] = alone.bodies[b];
+    }
+  }
+  execution.Report(1.0);
+  return result;
+}
 
 RigidRegistrationResult
 RegisterRigid(const std::vector<MeshArrays> &                        levels,
@@ -314,16 +80,6 @@ RegisterRigid(const std::vector<MeshArrays> &                        levels,
               const Execution &                                      execution,
               const std::function<void(const RigidPose &, double)> & observe)
 {
-  const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
-  if (cuts.empty() || !(parameters.cutLength > 0.0))
-  {
-    return RigidSearch(levels, views, initial, parameters, observe).Run(execution);
-  }
-  std::vector<MeshArrays> faded = levels;
-  for (MeshArrays & level : faded)
-  {
-    FadeToCuts(level, cuts, parameters.cutLength);
-  }
-  return RigidSearch(faded, views, initial, parameters, observe).Run(execution);
+  return RegisterRigidBodies({ levels }, views, initial, parameters, execution, observe).bodies.front();
 }
 } // namespace bone

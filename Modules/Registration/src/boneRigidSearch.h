@@ -1,0 +1,22 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneRigidSearch_h
+#define boneRigidSearch_h
+
+#include "boneRigidRegistration.h"
+
+namespace bone
+{
+/** \brief The first part of RegisterRigid, for one body whose levels have faded where they are cut: searches, each
+ * refined and judged, until a pose is Ok. Without covariance. */
+RigidRegistrationResult
+SearchRigid(const std::vector<MeshArrays> &                        levels,
+            const std::vector<RadiographView> &                    views,
+            const RigidPose &                                      initial,
+            const RigidRadiographParameters &                      parameters,
+            const Execution &                                      execution,
+            const std::function<void(const RigidPose &, double)> & observe);
+} // namespace bone
+
+#endif
