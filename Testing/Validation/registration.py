@@ -2,13 +2,14 @@
 """Rigid registration to X-rays simulated from whole CTs: how often, how exactly and how fast the pose is found.
 
 Builds the models (or takes those built before: MODELS=folder) and registers each from many starts. Writes
-Documentation/validation/registration.md.
+Documentation/validation/registration.md and registration_capture.png. Needs matplotlib.
 Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_VALIDATION (boneRegistrationValidation).
-Argument: number of starts, 40 without.
+Argument: by how much to multiply the numbers of starts, 1 without.
 
     BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneRegistrationValidation \\
-        Testing/Validation/registration.py 200
+        Testing/Validation/registration.py
 """
+import json
 import os
 import pathlib
 import statistics
@@ -16,70 +17,201 @@ import subprocess
 import sys
 import tempfile
 
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BONES = (("hip bone, clinical CT", "hip_ct/hip", 2), ("femur cut below, clinical CT", "hip_ct/hip", 1),
-         ("hip bone cut above, 3 mm CT", "pelvis_ct_3mm/pelvis", 3), ("tibia, 1 mm CT", "tibia_ct/tibia", 2))
-VIEWS = (("two views, 90° apart", (0, 90)), ("two views, 30° apart", (0, 30)), ("one view", (0,)))
+PAGES = ROOT / "Documentation/validation"
+HIP = ("hip bone, clinical CT", "hip_ct/hip", 2)
+FEMUR = ("femur cut below, clinical CT", "hip_ct/hip", 1)
+PELVIS = ("hip bone cut above, 3 mm CT", "pelvis_ct_3mm/pelvis", 3)
+TIBIA = ("tibia, 1 mm CT", "tibia_ct/tibia", 2)
+VIEWS = (("two views, 90° apart", (0, 90), 200), ("two views, 30° apart", (0, 30), 200), ("one view", (0,), 100))
+MISPLACED = ("--view-error", 1, 0.5)
+FOUND_AGAIN = ("--view-translation-deviation", 0.6, "--view-rotation-deviation", 0.3)
+FARTHEST = 60  # mm, of the starts of the capture range
+BIN = 5  # mm
+
+
+class Runs:
+    """Models, and trials with them."""
+
+    def __init__(self, folder, factor):
+        self.folder = folder
+        self.data = pathlib.Path(os.environ["BONETK_DATA"])
+        self.factor = factor
+
+    def model(self, bone):
+        _, path, label = bone
+        folder = self.folder / f"{pathlib.Path(path).name}_{label}"
+        if not folder.exists():
+            run(os.environ["BONETK"], "build", self.data / f"{path}_ct.nii.gz", "--labels",
+                self.data / f"{path}_labels.nii.gz", "--label", label, "--quiet", "-o", folder)
+        return folder / "model.hierarchy.json"
+
+    def trials(self, bones, count, *options):
+        count = max(2, round(self.factor * count))
+        lines = run(os.environ["BONETK_VALIDATION"], self.data / f"{bones[0][1]}_ct.nii.gz",
+                    *map(self.model, bones), "--count", count, "--seed", 7, *options).splitlines()
+        return [json.loads(line) for line in lines]
 
 
 def run(*command):
     return subprocess.run([str(part) for part in command], check=True, capture_output=True, text=True).stdout
 
 
-def row(name, lines, single):
-    """A line of the table; a pose is found below 2 mm, or, of one view, below 1 mm in its plane."""
-    trials = [[float(number) for number in line.split()] for line in lines]
-    error = 3 if single else 2
-    found = [t for t in trials if t[error] < (1 if single else 2)]
-    lost = [t for t in trials if t not in found]
-    flagged = sum(t[6] != 0 for t in lost)
-    alarms = sum(t[6] != 0 for t in found)
-    cells = [name, f"{len(found)} of {len(trials)}", f"{flagged} of {len(lost)}", str(alarms)]
-    if found:
-        cells += [f"{statistics.median(t[2] for t in found):.2f}", f"{statistics.median(t[3] for t in found):.2f}",
-                  " ".join(f"{statistics.mean(t[10 + k] for t in found):.2f}" for k in range(3)),
-                  " ".join(f"{statistics.median(t[13 + k] for t in found):.2f}" for k in range(3))]
-    else:
-        cells += ["", "", "", ""]
-    cells += [f"{statistics.median(t[7] for t in trials):.2f}", f"{statistics.mean(t[8] for t in trials):.2f}"]
-    return "| " + " | ".join(cells) + " |"
+def is_found(trial, single=False):
+    return trial["plane"] < 1 if single else trial["after"] < 2
+
+
+def median(trials, key):
+    return f"{statistics.median(t[key] for t in trials):.2f}" if trials else ""
+
+
+def errors(found):
+    """Root mean squares of the centre's errors along x, y, z, and medians of the stated deviations."""
+    def rms(k):
+        return statistics.mean(t["translation"][k] ** 2 for t in found) ** 0.5
+
+    return (" ".join(f"{rms(k):.2f}" for k in range(3)),
+            " ".join(f"{statistics.median(t['deviation'][k] for t in found):.2f}" for k in range(3)))
+
+
+def row(name, trials, single=False):
+    found = [t for t in trials if is_found(t, single)]
+    lost = [t for t in trials if not is_found(t, single)]
+    cells = [name, f"{len(found)} of {len(trials)}", f"{sum(t['quality'] != 0 for t in lost)} of {len(lost)}",
+             str(sum(t["quality"] != 0 for t in found)), median(found, "after"), median(found, "plane"),
+             *(errors(found) if found else ("", "")), median(trials, "seconds"),
+             f"{statistics.mean(t['processor'] for t in trials):.2f}"]
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def capture_range(trials):
+    """The largest multiple of BIN below which, in each bin, 95 % are found; and the shares of the bins."""
+    shares = []
+    for lower in range(0, FARTHEST, BIN):
+        inside = [t for t in trials if lower <= t["before"] < lower + BIN]
+        shares.append(sum(map(is_found, inside)) / len(inside) if inside else None)
+    captured = 0
+    for index, share in enumerate(shares):
+        if share is not None and share < 0.95:
+            break
+        captured = BIN * (index + 1)
+    return captured, shares
+
+
+def capture(runs):
+    """The section, and its picture."""
+    text, figure = "", plt.figure(figsize=(6, 3.2))
+    for name, count, options in (("search and refinement", 400, ()), ("refinement alone", 400, ("--searches", 0))):
+        captured, shares = capture_range(runs.trials([HIP], count, "--mtre", FARTHEST, *options))
+        text += f"| {name} | {captured} |\n"
+        plt.plot([BIN * (i + 0.5) for i in range(len(shares))], [100 * s if s is not None else None for s in shares],
+                 marker="o", label=name)
+    plt.axhline(95, color="grey", linewidth=0.8)
+    plt.xlabel("mTRE of the start (mm)")
+    plt.ylabel("found (%)")
+    plt.legend()
+    figure.tight_layout()
+    figure.savefig(PAGES / "registration_capture.png", dpi=110)
+    return f"| | capture range (mm) |\n|---|---|\n{text}"
+
+
+def misplaced(runs):
+    text = "| bone | | found | median mTRE | largest |\n|---|---|---|---|---|\n"
+    for bone in (HIP, FEMUR, PELVIS):
+        for name, options in (("taken as they are said", ()), ("found along with the pose", FOUND_AGAIN)):
+            trials = runs.trials([bone], 40, *MISPLACED, *options)
+            found = [t for t in trials if is_found(t)]
+            text += (f"| {bone[0]} | {name} | {len(found)} of {len(trials)} | {median(found, 'after')} | "
+                     f"{max(t['after'] for t in found):.2f} |\n")
+    return text
+
+
+def together(runs):
+    text = "| bone | | found | median mTRE |\n|---|---|---|---|\n"
+    for name, options in (("each by itself", ("--alone",)), ("together", ())):
+        trials = runs.trials([HIP, FEMUR], 40, *options)
+        for bone, own in ((HIP, trials), (FEMUR, [t["others"][0] for t in trials])):
+            found = [t for t in own if is_found(t)]
+            text += f"| {bone[0]} | {name} | {len(found)} of {len(own)} | {median(found, 'after')} |\n"
+    return text
+
+
+def ray_casting(runs):
+    text = "| bone | starts within | | found | median mTRE, all | seconds |\n|---|---|---|---|---|---|\n"
+    for bone in (HIP, FEMUR):
+        for reach in (10, 30):
+            for name, options in (("ray casting, 64 pixels", ("--ray-casting", 64)), ("BoneTK, 256 pixels", ())):
+                trials = runs.trials([bone], 20, "--mtre", reach, *options)
+                text += (f"| {bone[0]} | {reach} mm | {name} | {sum(map(is_found, trials))} of {len(trials)} | "
+                         f"{median(trials, 'after')} | {median(trials, 'seconds')} |\n")
+            print(text.splitlines()[-1], flush=True)
+    return text
 
 
 def main():
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 40
-    data = pathlib.Path(os.environ["BONETK_DATA"])
-    models = pathlib.Path(os.environ.get("MODELS") or tempfile.mkdtemp())
+    PAGES.mkdir(exist_ok=True)
+    runs = Runs(pathlib.Path(os.environ.get("MODELS") or tempfile.mkdtemp()),
+                float(sys.argv[1]) if len(sys.argv) > 1 else 1.0)
     commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
     text = f"""# Rigid registration to X-rays
 
-Made by `Testing/Validation/registration.py {count}` at {commit}.
+Made by `Testing/Validation/registration.py` at {commit}.
 
 Each model, built by `bonetk build` with its defaults, is registered to X-rays of 256 x 256 pixels simulated from the whole CT:
 attenuation of soft tissue and bone, all that the CT holds beside the bone, scatter (scatter-to-primary 0.6, blurred by 30 mm),
 blur of half a pixel, quantum noise of 50,000 photons a pixel. Source to bone 700 mm, to detector 1,000 mm; the detector
-just holds the bone with a tenth of room. {count} starts, uniform in ±20 mm along and ±20° about each axis.
+just holds the bone with a tenth of room. Where nothing else is said, two views are 90° apart and starts are uniform in ±20 mm
+along and ±20° about each axis.
 
 A pose is found where the mean displacement of the model's points (mTRE) is below 2 mm; of one view, where it is below 1 mm in
 the detector's plane. *Flagged*: how many of the poses that were not found are not called `ok`; *alarms*: how many that were
-found are not. Errors are medians of the poses found, in mm; the errors of the centre along x, y (the first view's depth) and z
-are means, beside them the stated standard deviations. Seconds: median by the clock, mean of the processors, with two threads.
+found are not. mTRE (mm) is the median of the poses found; errors of the centre along x, y (the first view's depth) and z are root
+mean squares, beside them the medians of the stated standard deviations. Seconds: median by the clock, mean of the processors,
+with two threads.
 """
-    for title, angles in VIEWS:
-        text += f"\n## {title[0].upper() + title[1:]}\n\n| bone | found | flagged | alarms | mTRE | in the plane | centre x, y, z | stated | seconds | processor |\n|---|---|---|---|---|---|---|---|---|---|\n"
-        for name, path, label in BONES:
-            folder = models / f"{pathlib.Path(path).name}_{label}"
-            if not folder.exists():
-                run(os.environ["BONETK"], "build", data / f"{path}_ct.nii.gz", "--labels", data / f"{path}_labels.nii.gz",
-                    "--label", label, "--quiet", "-o", folder)
-            lines = run(os.environ["BONETK_VALIDATION"], data / f"{path}_ct.nii.gz", folder / "model.hierarchy.json",
-                        "--angles", *angles, "--count", count, "--seed", 7).splitlines()
-            text += row(name, lines, len(angles) == 1) + "\n"
+    for title, angles, count in VIEWS:
+        text += (f"\n## {title[0].upper() + title[1:]}\n\n| bone | found | flagged | alarms | mTRE | in the plane | "
+                 "centre x, y, z | stated | seconds | processor |\n|---|---|---|---|---|---|---|---|---|---|\n")
+        for bone in (HIP, FEMUR, PELVIS, TIBIA):
+            text += row(bone[0], runs.trials([bone], count if bone != TIBIA else 40, "--angles", *angles),
+                        len(angles) == 1)
             print(text.splitlines()[-1], flush=True)
-    text += """
+    text += f"""
 The tibia's CT ends a voxel above the plateau. This false edge lies beside the true one and pulls the model by half a
 millimetre along the bone. Seen from one side, a long bone that is tilted towards the source looks like one tilted away.
-"""
-    (ROOT / "Documentation/validation/registration.md").write_text(text)
+
+## Capture range
+
+Of the first hip, after E. B. van de Kraats et al. (IEEE Trans Med Imaging 2005): starts whose mTRE is uniform from 0 to {FARTHEST} mm,
+in bins of {BIN} mm; the capture range ends with the first bin of which less than 95 % are found.
+
+{capture(runs)}
+![How many poses are found, by the mTRE of the start](registration_capture.png)
+
+## Views that are not where they are said to be
+
+The second view is 1 mm along some direction and 0.5° about some axis from where its geometry says. `ViewTranslationDeviation` 0.6
+and `ViewRotationDeviation` 0.3 say so, and its motion is found along with the pose.
+
+{misplaced(runs)}
+## Two bodies
+
+Hip bone and femur in views that hold both, so of larger pixels than above.
+
+{together(runs)}
+## Beside ray casting and normalized correlation
+
+The way of ITK's example IntensityBased2D3DRegistration, written anew for two views: radiographs of the CT above 0 HU by
+`itk::RayCastInterpolateImageFunction`, normalized correlation, `itk::PowellOptimizer` with the example's steps and tolerances. It
+sees 64 x 64 pixels, as an image of 256 x 256 takes sixteen times as long. Same X-rays, same starts, whose mTRE is uniform from 0.
+
+{ray_casting(runs)}"""
+    (PAGES / "registration.md").write_text(text)
 
 
 if __name__ == "__main__":
