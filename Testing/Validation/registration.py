@@ -134,7 +134,7 @@ def misplaced(runs):
 def together(runs):
     text = "| bone | | found | median mTRE |\n|---|---|---|---|\n"
     for name, options in (("each by itself", ("--alone",)), ("together", ())):
-        trials = runs.trials([HIP, FEMUR], 40, *options)
+        trials = runs.trials([HIP, FEMUR], 40, "--mtre", 15, *options)
         for bone, own in ((HIP, trials), (FEMUR, [t["others"][0] for t in trials])):
             found = [t for t in own if is_found(t)]
             text += f"| {bone[0]} | {name} | {len(found)} of {len(own)} | {median(found, 'after')} |\n"
@@ -201,7 +201,7 @@ and `ViewRotationDeviation` 0.3 say so, and its motion is found along with the p
 {misplaced(runs)}
 ## Two bodies
 
-Hip bone and femur in views that hold both, so of larger pixels than above.
+Hip bone and femur in views that hold both, so of larger pixels than above, from starts whose mTRE is uniform from 0 to 15 mm.
 
 {together(runs)}
 ## Beside ray casting and normalized correlation
