@@ -10,6 +10,7 @@
 
 #include "boneAtomicFile.h"
 #include "boneFileName.h"
+#include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
 #include "boneRegistrationReport.h"
@@ -88,29 +89,61 @@ PrintResult(const std::string & name, const RigidRegistrationResult & result, Se
   session.Print(line);
 }
 
-void
-RegisterBody(const RegisterRigidOptions &      options,
-             std::size_t                       body,
-             const std::vector<PreparedView> & views,
-             Session &                         session)
+bool
+AreViewsMoved(const RigidRadiographParameters & parameters)
 {
-  const auto start = std::chrono::steady_clock::now();
-  const auto model = ReadModel(options.models[body]);
-  auto       registration = Registration::New();
-  registration->SetModel(model);
-  registration->SetParameters(options.rigid);
-  ConnectViews(options.views, views, *registration, session);
-  session.Watch(registration, "register");
-  registration->Update();
-  const auto &      result = registration->GetResult();
+  return parameters.viewTranslationDeviation > 0.0 || parameters.viewRotationDeviation > 0.0;
+}
+
+std::string
+GeometryNameOf(const RegisterRigidOptions & options)
+{
+  return options.output + "_geometry.json";
+}
+
+/** The views where they were found to be; OUT_geometry.json where that is not where they were said to be. */
+std::vector<PreparedView>
+CorrectViews(const RegisterRigidOptions &        options,
+             std::vector<PreparedView>           views,
+             const std::vector<ViewCorrection> & corrections)
+{
+  if (AreViewsMoved(options.rigid))
+  {
+    std::vector<XRayGeometry::Pointer> geometries;
+    for (std::size_t v = 0; v < views.size(); ++v)
+    {
+      geometries.push_back(XRayGeometry::New());
+      geometries.back()->SetView(corrections[v].motion.ToModelSpace(views[v].geometry->GetView()));
+      views[v].geometry = geometries.back();
+    }
+    WriteGeometry(geometries, GeometryNameOf(options));
+  }
+  return views;
+}
+
+/** Files, lines and warnings of one body. */
+void
+ReportBody(const RegisterRigidOptions &      options,
+           unsigned int                      body,
+           const std::vector<PreparedView> & views,
+           const Registration &              registration,
+           const Hierarchy &                 model,
+           double                            seconds,
+           Session &                         session)
+{
+  const auto &      result = registration.GetResult(body);
   const std::string output = OutputOf(options, body);
-  WriteRigidTransform(*registration->GetTransform(), output + ".tfm");
+  WriteRigidTransform(*registration.GetTransform(body), output + ".tfm");
   nlohmann::json report = ReportRegistration(result);
   report["model"] = options.models[body];
   report["xrays"] = options.views.xrays;
-  report["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report["seconds"] = seconds;
+  if (AreViewsMoved(options.rigid))
+  {
+    report["viewCorrections"] = ReportViewCorrections(registration.GetViewCorrections());
+  }
   WriteFileAtomically(output + ".json", report.dump(1) + "\n");
-  WriteRegistrationPictures(views, model->GetMesh(0)->GetArrays(), result.pose, output);
+  WriteRegistrationPictures(views, model.GetMesh(0)->GetArrays(), result.pose, output);
   PrintResult(options.models[body], result, session);
   if (result.quality != RegistrationQuality::Ok)
   {
@@ -136,16 +169,33 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
       files.push_back({ PictureNameOf(output, v), {} });
     }
   }
+  if (AreViewsMoved(options.rigid))
+  {
+    files.push_back({ GeometryNameOf(options), {} });
+  }
   VerifyOutputs(files);
   RegisterRigidOptions chosen = options;
   ApplySearch(options.views, chosen.rigid);
   const auto views = ReadRegistrationViews(chosen.views, session);
-  for (std::size_t body = 0; body < options.models.size(); ++body)
+  const auto start = std::chrono::steady_clock::now();
+  auto       registration = Registration::New();
+  registration->SetParameters(chosen.rigid);
+  std::vector<Hierarchy::Pointer> models;
+  for (const std::string & path : options.models)
   {
-    RegisterBody(chosen, body, views, session);
+    models.push_back(ReadModel(path));
+    registration->SetModel(static_cast<unsigned int>(models.size()) - 1, models.back());
+  }
+  ConnectViews(chosen.views, views, *registration, session);
+  session.Watch(registration, "register");
+  registration->Update();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto   corrected = CorrectViews(chosen, views, registration->GetViewCorrections());
+  for (unsigned int body = 0; body < models.size(); ++body)
+  {
+    ReportBody(chosen, body, corrected, *registration, *models[body], seconds, session);
   }
 }
-
 } // namespace
 
 void
@@ -160,8 +210,8 @@ AddRegisterCommand(CLI::App & app, Action & action)
     ->add_option(
       "model,--model",
       options->models,
-      "Model (.hierarchy.json, .vtu with a density in HU); several are registered each by itself, as OUT_B1, "
-      "OUT_B2, ...")
+      "Model (.hierarchy.json, .vtu with a density in HU); several are bodies that the X-rays show together, each free "
+      "to move, as OUT_B1, OUT_B2, ...")
     ->required();
   AddRegistrationViewOptions(command, options->views, "20 20");
   AddParameterOptions(command, options->rigid);

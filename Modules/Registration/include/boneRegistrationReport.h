@@ -19,6 +19,11 @@ namespace bone
 nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result);
 
+/** Where views are, from where they are said to be (ViewCorrection): a list of `transform` (4 x 4, rows: the motion
+ * that bodies seem to have made), `centre`, `covariance` and `standardDeviations` as above. */
+nlohmann::json
+ReportViewCorrections(const std::vector<ViewCorrection> & views);
+
 /** The same of a deformable registration, `covariance` and `standardDeviations` being the pose's alone; without
  * `searches`, and with `coefficients` (`shape`, `smooth` and `density`, in standard deviations), `pointDeviation`
  * (`mean` and `largest` standard deviation of a point's position, mm) and `precision` (by which the cost counts against

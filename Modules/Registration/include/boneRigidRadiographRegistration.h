@@ -12,19 +12,21 @@
 namespace bone
 {
 /** \class RigidRadiographRegistration
- * \brief Finds the pose of a density model in one or more X-rays (paper 7).
+ * \brief Finds the poses of one or more density models in one or more X-rays (paper 7).
  *
  * Inputs:
  * - "Model": a DensityHierarchy, all of whose levels have a density (HU: what they exceed water by is what shows);
+ * - "Model1", "Model2", ...: further bodies that the same X-rays show, each free to move (SetModel(body, ...));
  * - views "Radiograph<v>", "Geometry<v>" and "Weights<v>", and "InitialTransform": \ref RadiographRegistrationBase.
  *
- * Output: an itk::Euler3DTransform from the model's space to the geometry's, decorated, its centre the mean of the
- * points of the first level: GetTransform(). GetResult() says how far it is to be trusted. One view tells depth poorly,
- * which the covariance shows.
+ * Outputs: for each body an itk::Euler3DTransform from the model's space to the geometry's, decorated, its centre the
+ * mean of the points of the first level: GetTransform(body). GetResult(body) says how far it is to be trusted. One view
+ * tells depth poorly, which the covariance shows. GetViewCorrections() has where the views are, where
+ * ViewTranslationDeviation or ViewRotationDeviation says that their geometries may be off.
  *
  * Parameters: \ref RigidRadiographParameters. Each step of the refinement invokes an itk::IterationEvent, at which
- * GetCurrentPose() and GetCurrentCost() are the step's. The same result for any number of threads. Method, quality and
- * covariance: RegisterRigid.
+ * GetCurrentPose() (of the body that is refined; of the first one, where all are) and GetCurrentCost() are the step's.
+ * The same result for any number of threads. Method, quality and covariance: RegisterRigidBodies.
  *
  * Refused, beside what RadiographRegistrationBase refuses: views in which no pixel counts or that are constant, models
  * without density.
@@ -49,6 +51,12 @@ public:
   itkSetInputMacro(Model, HierarchyType);
   itkGetInputMacro(Model, HierarchyType);
 
+  /** The model of body 0, 1, ...; those before it must be set too. */
+  void
+  SetModel(unsigned int body, const HierarchyType * model);
+  unsigned int
+  GetNumberOfBodies() const;
+
   BONE_FILTER_PARAMETERS(RigidRadiographParameters, BONE_RIGID_RADIOGRAPH_PARAMETERS)
 
   using Superclass::MakeOutput;
@@ -58,17 +66,27 @@ public:
     return DecoratedTransformType::New().GetPointer();
   }
   DecoratedTransformType *
-  GetOutput()
+  GetOutput(unsigned int body = 0)
   {
-    return static_cast<DecoratedTransformType *>(this->GetPrimaryOutput());
+    return static_cast<DecoratedTransformType *>(this->itk::ProcessObject::GetOutput(body));
   }
   /** What the last update found. */
   const TransformType *
-  GetTransform() const
+  GetTransform(unsigned int body = 0) const
   {
-    return static_cast<const DecoratedTransformType *>(this->GetPrimaryOutput())->Get();
+    return static_cast<const DecoratedTransformType *>(this->itk::ProcessObject::GetOutput(body))->Get();
   }
-  itkGetConstReferenceMacro(Result, RigidRegistrationResult);
+  const RigidRegistrationResult &
+  GetResult(unsigned int body = 0) const
+  {
+    return m_Result.bodies.at(body);
+  }
+  /** Of each view. */
+  const std::vector<ViewCorrection> &
+  GetViewCorrections() const
+  {
+    return m_Result.views;
+  }
 
   itkGetConstReferenceMacro(CurrentPose, RigidPose);
 
@@ -84,8 +102,21 @@ protected:
   PrintSelf(std::ostream & os, itk::Indent indent) const override;
 
 private:
-  RigidRegistrationResult m_Result;
-  RigidPose               m_CurrentPose;
+  static std::string
+  NameOfModel(unsigned int body)
+  {
+    return body == 0 ? "Model" : "Model" + std::to_string(body);
+  }
+  const HierarchyType *
+  GetModelOf(unsigned int body) const
+  {
+    return dynamic_cast<const HierarchyType *>(this->itk::ProcessObject::GetInput(NameOfModel(body)));
+  }
+  std::vector<MeshArrays>
+  CopyLevels(unsigned int body) const;
+
+  RigidBundleResult m_Result;
+  RigidPose         m_CurrentPose;
 };
 } // namespace bone
 

@@ -70,29 +70,36 @@ DrawOutline(Canvas & canvas, const XRayGeometry::View & view, const std::vector<
   }
 }
 
-/** What the results of all registrations have. */
-template <typename TResult>
+/** A rigid motion and how sure it is. */
 nlohmann::json
-ReportPose(const TResult & result, const Eigen::Matrix<double, 6, 6> & covariance)
+ReportMotion(const RigidPose & pose, const Eigen::Matrix<double, 6, 6> & covariance)
 {
   Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
-  transform.topLeftCorner<3, 3>() = result.pose.rotation;
-  transform.topRightCorner<3, 1>() = result.pose.Apply(Vector3::Zero());
+  transform.topLeftCorner<3, 3>() = pose.rotation;
+  transform.topRightCorner<3, 1>() = pose.Apply(Vector3::Zero());
   std::vector<double> deviations;
   for (int k = 0; k < 6; ++k)
   {
     deviations.push_back(std::sqrt(std::max(0.0, covariance(k, k))) * (k < 3 ? 1.0 : 180.0 / std::acos(-1.0)));
   }
-  const auto & centre = result.pose.centre;
-  return { { "converged", result.converged },
-           { "quality", ParameterText(result.quality) },
-           { "distinctness", result.distinctness },
-           { "transform", RowsOf(transform) },
-           { "centre", { centre.x(), centre.y(), centre.z() } },
+  return { { "transform", RowsOf(transform) },
+           { "centre", { pose.centre.x(), pose.centre.y(), pose.centre.z() } },
            { "covariance", RowsOf(covariance) },
-           { "standardDeviations", deviations },
-           { "cost", result.cost },
-           { "views", result.costs } };
+           { "standardDeviations", deviations } };
+}
+
+/** What the results of all registrations have. */
+template <typename TResult>
+nlohmann::json
+ReportPose(const TResult & result, const Eigen::Matrix<double, 6, 6> & covariance)
+{
+  nlohmann::json report = ReportMotion(result.pose, covariance);
+  report["converged"] = result.converged;
+  report["quality"] = ParameterText(result.quality);
+  report["distinctness"] = result.distinctness;
+  report["cost"] = result.cost;
+  report["views"] = result.costs;
+  return report;
 }
 
 /** The panel magnified, and with it its rows' true height. */
@@ -127,6 +134,17 @@ PoseCovariance(const DeformableRegistrationResult & result)
   turn.topLeftCorner<3, 3>() = result.pose.rotation;
   turn.bottomRightCorner<3, 3>() = result.pose.rotation;
   return turn * result.covariance.topLeftCorner<6, 6>() * turn.transpose();
+}
+
+nlohmann::json
+ReportViewCorrections(const std::vector<ViewCorrection> & views)
+{
+  nlohmann::json list = nlohmann::json::array();
+  for (const ViewCorrection & view : views)
+  {
+    list.push_back(ReportMotion(view.motion, view.covariance));
+  }
+  return list;
 }
 
 nlohmann::json

@@ -88,7 +88,7 @@ public:
           const Execution &                                      execution,
           const std::function<void(const RigidPose &, double)> & observe) const
   {
-    constexpr double least = 1e-4; // of the cost, as in RegisterRigid
+    constexpr double least = 0.02; // of the logarithm of the posterior
     MetricSum        value = this->Evaluate(at, execution.Silent());
     Damping          damping;
     bool             isDone = false;
@@ -108,7 +108,7 @@ public:
         value = std::move(there);
       }
       damping.Tell(gain > 0.0);
-      isDone = damping.IsStuck() || (gain > 0.0 && gain < least * precision);
+      isDone = damping.IsStuck() || (gain > 0.0 && gain < least);
       if (observe)
       {
         observe(at.poses.front(), value.cost);

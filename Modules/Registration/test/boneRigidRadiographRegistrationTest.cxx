@@ -196,6 +196,28 @@ TEST(RigidRadiographRegistration, ABoneThatNoViewShowsIsNoSuccess)
   EXPECT_GE(result.covariance(0, 0), 1e6); // it could be anywhere
 }
 
+TEST(RigidRadiographRegistration, HasAnOutputForEachBody)
+{
+  auto registration = MakeRegistration(Truth);
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  registration->SetInitialTransform(Truth.ToTransform());
+  registration->SetModel(1, Hierarchy());
+  EXPECT_EQ(registration->GetNumberOfBodies(), 2u);
+  registration->Update();
+  for (unsigned int body = 0; body < 2; ++body)
+  {
+    const auto & pose = registration->GetResult(body).pose;
+    const auto   moved = registration->GetTransform(body)->TransformPoint(itk::Point<double, 3>(0.0));
+    EXPECT_LT((Vector3(moved[0], moved[1], moved[2]) - pose.Apply(Vector3::Zero())).norm(), 1e-9);
+  }
+  EXPECT_EQ(registration->GetViewCorrections().size(), 2u);
+
+  auto noDensity = MakeRegistration(Truth);
+  noDensity->SetModel(1, DensityHierarchy<>::New());
+  EXPECT_THAT(ErrorOf(noDensity), ::testing::HasSubstr("The input 'Model1' has no level"));
+}
+
 TEST(RigidRadiographRegistration, IsLazyAndTellsEachStep)
 {
   auto   registration = MakeRegistration(Truth);
