@@ -131,6 +131,27 @@ class Register(TestCase):
             self.assertLess(self.error(name + ".json"), 1.5)
             self.assertIn(name + "_V2.png", os.listdir())
 
+    def test_a_view_that_is_elsewhere(self):
+        geometry = read_json("views.json")
+        # The second view, moved along x, its depth being y or x: 2 mm.
+        for member in ("source", "detectorOrigin"):
+            geometry[1][member][2] += 2.0
+        write_json(geometry, "off.json")
+        command = [*self.command[:self.command.index("views.json")], "off.json", "--pixels", 128, "--search", 0, 0]
+        self.succeed(*command, "-o", "taken")
+        self.succeed(*command, "--view-translation-deviation", 2, "--view-rotation-deviation", 0.5, "-o", "r")
+        self.assertLess(self.error("r.json"), 0.5 * self.error("taken.json"))
+        self.assertNotIn("viewCorrections", read_json("taken.json"))
+        first, second = read_json("r.json")["viewCorrections"]
+        self.assertTrue(numpy.allclose(first["transform"], numpy.eye(4)))
+        self.assertGreater(second["standardDeviations"][2], 0.0)
+        corrected, stated = read_json("r_geometry.json"), read_json("views.json")
+        self.assertLess(abs(corrected[1]["source"][2] - stated[1]["source"][2]), 1.0)
+        # What was found serves as a geometry.
+        self.succeed(*self.command[:self.command.index("views.json")], "r_geometry.json", "--pixels", 128, "--search", 0, 0,
+                     "--initial", "r.tfm", "-o", "again")
+        self.assertLess(self.error("again.json"), 0.5 * self.error("taken.json"))
+
     def test_a_bone_that_is_not_there_is_no_success(self):
         # Air with noise: nothing of the bone.
         noise = numpy.random.default_rng(1).normal(1.0, 0.1, (SIZE, SIZE)).astype(numpy.float32)

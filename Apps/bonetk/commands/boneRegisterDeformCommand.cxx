@@ -9,6 +9,7 @@
 #include "boneDeformableRadiographRegistration.h"
 
 #include "boneAtomicFile.h"
+#include "boneDeformablePosterior.h"
 #include "boneIOError.h"
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
@@ -26,8 +27,16 @@ struct RegisterDeformOptions
   std::string                    model;
   RegistrationViewOptions        views;
   DeformableRadiographParameters deformable;
+  int                            samples{ 0 };
   std::string                    output;
 };
+
+/** OUT_S1.vtu, OUT_S2.vtu, ... */
+std::string
+SampleNameOf(const RegisterDeformOptions & options, int sample)
+{
+  return options.output + "_S" + std::to_string(sample + 1) + ".vtu";
+}
 
 StatisticalModel::Pointer
 ReadAtlasWithDensity(const std::string & path)
@@ -67,8 +76,8 @@ PrintDeformation(const std::string & name, const nlohmann::json & report, Sessio
                 report["cost"].get<double>(),
                 report["pointDeviation"]["mean"].get<double>(),
                 report["pointDeviation"]["largest"].get<double>());
-  session.Print(line + ("  shape" + LeadingCoefficients(report["coefficients"]["shape"])) + "\n  density" +
-                LeadingCoefficients(report["coefficients"]["density"]) + "\n");
+  session.Print(line + ("  shape" + LeadingCoefficients(report["shape"])) + "\n  density" +
+                LeadingCoefficients(report["density"]) + "\n");
 }
 
 void
@@ -82,7 +91,13 @@ VerifyDeformOptions(const RegisterDeformOptions & options)
       "well the start is known, or a second X-ray");
   }
   const std::string &     output = options.output;
-  std::vector<OutputFile> files{ { output + ".vtu", {} }, { output + ".tfm", {} }, { output + ".json", {} } };
+  std::vector<OutputFile> files{
+    { output + ".vtu", {} }, { output + ".tfm", {} }, { output + ".json", {} }, { output + "_posterior.h5", {} }
+  };
+  for (int sample = 0; sample < options.samples; ++sample)
+  {
+    files.push_back({ SampleNameOf(options, sample), {} });
+  }
   for (std::size_t v = 0; v < options.views.xrays.size(); ++v)
   {
     files.push_back({ PictureNameOf(output, v), {} });
@@ -116,6 +131,16 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   const auto & result = registration->GetResult();
   WriteMeshArrays(result.mesh, options.output + ".vtu");
   WriteRigidTransform(*registration->GetTransform(), options.output + ".tfm");
+  WritePosterior(result, options.output + "_posterior.h5");
+  if (options.samples > 0)
+  {
+    const DeformablePosterior posterior(atlas->GetContent(), parameters, result);
+    for (int sample = 0; sample < options.samples; ++sample)
+    {
+      WriteMeshArrays(posterior.Draw(static_cast<std::uint64_t>(parameters.seed) + static_cast<std::uint64_t>(sample)),
+                      SampleNameOf(options, sample));
+    }
+  }
   nlohmann::json report = ReportRegistration(result);
   report["model"] = options.model;
   report["xrays"] = options.views.xrays;
@@ -139,10 +164,17 @@ AddRegisterDeformCommand(CLI::App & group, Action & action)
   auto   options = std::make_shared<RegisterDeformOptions>();
   auto * command = group.add_subcommand("deform",
                                         "Pose, shape and density of an atlas' bone in X-rays; writes OUT.vtu, OUT.tfm, "
-                                        "OUT.json and pictures OUT_V1.png, ...");
+                                        "OUT.json, OUT_posterior.h5 and pictures OUT_V1.png, ...");
   command->add_option("model", options->model, "Statistical model with density (.h5)")->required();
   AddRegistrationViewOptions(command, options->views, "10 10");
   AddParameterOptions(command, options->deformable);
+  command
+    ->add_option("--samples",
+                 options->samples,
+                 "Bones to draw from what the X-rays leave open, as OUT_S1.vtu, OUT_S2.vtu, ...; their cells may be "
+                 "inverted where little is known")
+    ->check(CLI::Range(0, 10000).description(""))
+    ->capture_default_str();
   command->add_option("-o,--output", options->output, "Beginning of the names of the files to write")->required();
   command->callback(
     [options, &action] { action = [options](Session & session) { RunRegisterDeform(*options, session); }; });

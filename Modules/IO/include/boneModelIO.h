@@ -29,6 +29,10 @@ WriteStatisticalModel(const StatisticalModel * model, const std::string & path);
 /** Refuses what is missing, broken, of another version, or does not match in itself. */
 StatisticalModel::Pointer
 ReadStatisticalModel(const std::string & path);
+
+/** Writes matrices by name, datasets of rows x columns, into an HDF5 file; the whole file or none. */
+void
+WriteMatrices(const std::vector<std::pair<std::string, Eigen::MatrixXd>> & matrices, const std::string & path);
 /** \} */
 
 /** \class FileTrainingSet

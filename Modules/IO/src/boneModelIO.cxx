@@ -481,6 +481,21 @@ WriteStatisticalModel(const StatisticalModel * model, const std::string & path)
   file.Commit();
 }
 
+void
+WriteMatrices(const std::vector<std::pair<std::string, Eigen::MatrixXd>> & matrices, const std::string & path)
+{
+  RequireExtension(path, { ".h5" });
+  AtomicFile file(path);
+  NamingHdf5File(path, "cannot be written (is the disk full?)", [&] {
+    H5::H5File hdf5(file.GetTemporaryPath(), H5F_ACC_TRUNC);
+    for (const auto & [name, matrix] : matrices)
+    {
+      PutColumns(hdf5, name, matrix.transpose());
+    }
+  });
+  file.Commit();
+}
+
 StatisticalModel::Pointer
 ReadStatisticalModel(const std::string & path)
 {

@@ -155,9 +155,9 @@ ReportRegistration(const DeformableRegistrationResult & result)
     const double * begin = result.coefficients.data() + first;
     return std::vector<double>(begin, begin + count);
   };
-  report["coefficients"] = { { "shape", part(0, result.shapeModes) },
-                             { "smooth", part(result.shapeModes, result.smoothModes) },
-                             { "density", part(result.shapeModes + result.smoothModes, result.densityModes) } };
+  report["shape"] = part(0, result.shapeModes);
+  report["smooth"] = part(result.shapeModes, result.smoothModes);
+  report["density"] = part(result.shapeModes + result.smoothModes, result.densityModes);
   double sum = 0.0, largest = 0.0;
   for (const Vector3 & deviation : result.pointDeviations)
   {
@@ -166,13 +166,25 @@ ReportRegistration(const DeformableRegistrationResult & result)
   }
   const double points = static_cast<double>(std::max<std::size_t>(1, result.pointDeviations.size()));
   report["pointDeviation"] = { { "mean", sum / points }, { "largest", largest } };
-  report["regions"] = nlohmann::json::array();
+  const auto estimate = [](double mean, double deviation) {
+    return nlohmann::json{ { "mean", mean }, { "standardDeviation", deviation } };
+  };
+  nlohmann::json & posterior = report["posterior"];
+  posterior["regions"] = nlohmann::json::array();
   for (const RegionEstimate & region : result.regions)
   {
-    report["regions"].push_back({ { "region", region.region },
-                                  { "volume", { region.volume, region.volumeDeviation } },
-                                  { "density", { region.density, region.densityDeviation } },
-                                  { "mass", { region.mass, region.massDeviation } } });
+    nlohmann::json entry{ { "volumeMm3", estimate(region.volume, region.volumeDeviation) },
+                          { "meanDensity", estimate(region.density, region.densityDeviation) },
+                          { "massHuMm3", estimate(region.mass, region.massDeviation) } };
+    if (region.region < 0)
+    {
+      posterior.update(entry);
+    }
+    else
+    {
+      entry["region"] = region.region;
+      posterior["regions"].push_back(entry);
+    }
   }
   report["precision"] = result.precision;
   return report;

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneDeformableRadiographRegistration.h"
 
+#include "boneDeformablePosterior.h"
+
 #include "boneDeformableTestAtlas.h"
 
 #include <itkCommand.h>
@@ -380,5 +382,41 @@ TEST(DeformableRadiographRegistration, RefusesWhatItCannotUse)
   auto range = MakeRegistration();
   range->SetPatch(2);
   EXPECT_THAT(ErrorOf(range), HasSubstr("Patch is 2"));
+}
+TEST(DeformablePosterior, BonesDrawnScatterAsStated)
+{
+  auto registration = MakeRegistration();
+  registration->SetSearchTranslation(0.0);
+  registration->SetSearchRotation(0.0);
+  registration->SetInitialTransform(Truth.ToTransform());
+  registration->Update();
+  const auto &              result = registration->GetResult();
+  const DeformablePosterior posterior(Atlas(), Parameters(), result);
+  constexpr int             draws = 400;
+  std::vector<Vector3>      squares(result.mesh.points.size(), Vector3::Zero());
+  for (int i = 0; i < draws; ++i)
+  {
+    const MeshArrays mesh = posterior.Draw(static_cast<std::uint64_t>(i));
+    for (std::size_t p = 0; p < squares.size(); ++p)
+    {
+      squares[p] += (mesh.points[p] - result.mesh.points[p]).cwiseAbs2() / draws;
+    }
+  }
+  Vector3 drawn = Vector3::Zero(), stated = Vector3::Zero();
+  for (std::size_t p = 0; p < squares.size(); ++p)
+  {
+    drawn += squares[p];
+    stated += result.pointDeviations[p].cwiseAbs2();
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    EXPECT_NEAR(std::sqrt(drawn[k] / stated[k]), 1.0, 0.15) << stated.transpose() / squares.size();
+  }
+  EXPECT_EQ(posterior.Draw(3).points, posterior.Draw(3).points);
+  const auto factor = PosteriorFactor(result);
+  EXPECT_LT((factor * factor.transpose() - result.covariance).norm(), 1e-9 * result.covariance.norm());
+  auto others = Parameters();
+  others.smoothModes = 3;
+  EXPECT_THROW(DeformablePosterior(Atlas(), others, result), std::invalid_argument);
 }
 } // namespace

@@ -149,14 +149,25 @@ TEST(RigidRadiographRegistration, ASecondViewTellsTheDepth)
 
 TEST(RigidRadiographRegistration, StatedDepthGrowsWithTheSurfacesDeviation)
 {
+  // Of an X-ray without noise the surface would be found exactly, whatever is said of it beforehand.
+  auto                            xray = TwoXRays(Body(12), Truth)[0];
+  std::mt19937                    random(5);
+  std::normal_distribution<float> noise(0.0f, 0.05f * *std::max_element(xray.values.begin(), xray.values.end()));
+  for (float & x : xray.values)
+  {
+    x += noise(random);
+  }
   double variances[2];
   for (int i = 0; i < 2; ++i)
   {
     auto registration = MakeRegistration(Truth, 1);
+    auto geometry = XRayGeometry::New();
+    geometry->SetView(xray.view);
+    registration->SetView(0, ToImage(xray.values, xray.view), geometry);
     registration->SetSearchTranslation(0.0);
     registration->SetSearchRotation(0.0);
     registration->SetInitialTransform(Truth.ToTransform());
-    registration->SetSurfaceDeviation(i == 0 ? 0.0 : 0.2);
+    registration->SetSurfaceDeviation(0.2 * i);
     registration->Update();
     variances[i] = registration->GetResult().covariance(1, 1);
   }
