@@ -17,9 +17,11 @@ LeaveOneOutResiduals(const PrincipalModes & modes, const Eigen::MatrixXd & score
 
 /** \brief Smooth displacements with the variance of what an atlas' modes of shape leave of a new subject.
  *
- * The modes are those of SmoothModes (`length`, mm, `modes` at the most). Their variances, alike for each three of one
- * shape, are those of the atlas' own subjects, each less its projection on the modes of the others (leave-one-out). The
- * total variance is of all that is left, in these modes or not. Throws std::invalid_argument where the atlas has the
+ * The modes are those of SmoothModes (`length`, mm, `modes` at the most), less the small rigid motions in them: shapes
+ * are aligned. Their variances, alike for each three of one shape, are the most likely ones of what the atlas' own
+ * subjects, each less its projection on the modes of the others, have of them (leave-one-out, expectation
+ * maximisation): the others take a part of each smooth mode, and what they take says nothing of its variance. The total
+ * variance is of all that is left, in these modes or not. Throws std::invalid_argument where the atlas has the
  * scores of fewer than four subjects, and what SmoothModes throws. */
 PrincipalModes
 ResidualModes(const StatisticalModelContent & atlas, double length, int modes);

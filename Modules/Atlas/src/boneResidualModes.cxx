@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <string>
 
 namespace bone
 {
@@ -34,6 +36,78 @@ LeftOut(const Eigen::MatrixXd & shapes, Eigen::Index subject)
   }
   return rest;
 }
+
+/** What no small rigid motion of the points makes of modes (x1, y1, z1, x2, ... by #modes). */
+Eigen::MatrixXd
+WithoutRigidMotions(const std::vector<Vector3> & points, const Eigen::MatrixXd & modes)
+{
+  Eigen::MatrixXd motions(modes.rows(), 6);
+  const Vector3   centre =
+    std::accumulate(points.begin(), points.end(), Vector3(Vector3::Zero())) / static_cast<double>(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      motions.block<3, 1>(static_cast<Eigen::Index>(3 * p), k) = Vector3::Unit(k);
+      motions.block<3, 1>(static_cast<Eigen::Index>(3 * p), 3 + k) = Vector3::Unit(k).cross(points[p] - centre);
+    }
+  }
+  Eigen::MatrixXd rest = modes;
+  const auto      eigen = EigenOf<Eigen::Dynamic>(motions.transpose() * motions);
+  for (Eigen::Index k = 0; k < eigen.values.size(); ++k)
+  {
+    if (eigen.values[k] > 1e-10 * eigen.values.maxCoeff())
+    {
+      const Eigen::VectorXd motion = motions * eigen.vectors.col(k) / std::sqrt(eigen.values[k]);
+      rest -= motion * (motion.transpose() * rest);
+    }
+  }
+  return rest;
+}
+
+/** The variances of smooth modes, alike for each three of one shape, by expectation maximisation. A column of `left`,
+ * in units of the atlas' modes, is a subject less its projection on the others: what that projection leaves of the
+ * smooth modes, and a rest that is independent at each point. */
+Eigen::VectorXd
+EstimateVariances(const Eigen::MatrixXd & smooth, const Eigen::MatrixXd & ofAtlas, const Eigen::MatrixXd & left)
+{
+  constexpr Eigen::Index axes = 3;
+  constexpr int          iterations = 30;
+  constexpr double       tiny = 1e-12;
+  const Eigen::Index     count = smooth.cols();
+  const auto             subjects = static_cast<double>(left.cols());
+  const Eigen::MatrixXd  overlap = smooth.transpose() * ofAtlas;
+  const Eigen::MatrixXd  beside = smooth.transpose() * smooth - overlap * overlap.transpose();
+  const Eigen::MatrixXd  along = overlap * left;
+  const double           total = left.squaredNorm() / subjects;
+  const double           rest = total / static_cast<double>(smooth.rows());
+  const auto             share = [&](const Eigen::VectorXd & squares) {
+    Eigen::VectorXd shared(count);
+    for (Eigen::Index k = 0; k < count; k += axes)
+    {
+      const Eigen::Index n = std::min(axes, count - k);
+      shared.segment(k, n).setConstant(std::max(tiny * total, squares.segment(k, n).mean()));
+    }
+    return shared;
+  };
+  Eigen::VectorXd variances = share(along.rowwise().squaredNorm() / subjects);
+  for (int i = 0; i < iterations && rest > 0.0; ++i)
+  {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index s = 0; s < left.cols(); ++s)
+    {
+      // Of the atlas' modes, this subject's rest alone is none of the others'.
+      const Eigen::VectorXd own = overlap * left.col(s).normalized();
+      Eigen::MatrixXd       precision = (beside + own * own.transpose()) / rest;
+      precision.diagonal() += variances.cwiseInverse();
+      const Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+      const Eigen::VectorXd mean = covariance * along.col(s) / rest;
+      squares += (mean.cwiseAbs2() + covariance.diagonal()) / subjects;
+    }
+    variances = share(squares);
+  }
+  return variances;
+}
 } // namespace
 
 Eigen::MatrixXd
@@ -51,8 +125,7 @@ LeaveOneOutResiduals(const PrincipalModes & modes, const Eigen::MatrixXd & score
 PrincipalModes
 ResidualModes(const StatisticalModelContent & atlas, double length, int modes)
 {
-  constexpr Eigen::Index axes = 3;
-  const Eigen::Index     subjects = atlas.shapeScores.rows();
+  const Eigen::Index subjects = atlas.shapeScores.rows();
   if (subjects < 4)
   {
     throw std::invalid_argument("what an atlas leaves out is estimated from four subjects or more; this one has the "
@@ -61,13 +134,8 @@ ResidualModes(const StatisticalModelContent & atlas, double length, int modes)
   }
   const Eigen::MatrixXd left = LeaveOneOutResiduals(atlas.shape, atlas.shapeScores);
   PrincipalModes        result = SmoothModes(atlas.mean.points, 1.0, length, modes);
-  const Eigen::MatrixXd along = result.modes.transpose() * (atlas.shape.modes * left);
-  for (Eigen::Index k = 0; k < result.variances.size(); k += axes)
-  {
-    const Eigen::Index n = std::min(axes, result.variances.size() - k);
-    result.variances.segment(k, n).setConstant(along.middleRows(k, n).squaredNorm() /
-                                               static_cast<double>(n * subjects));
-  }
+  result.modes = WithoutRigidMotions(atlas.mean.points, result.modes);
+  result.variances = EstimateVariances(result.modes, atlas.shape.modes, left);
   result.totalVariance = left.squaredNorm() / static_cast<double>(subjects) +
                          std::max(0.0, atlas.shape.totalVariance - atlas.shape.variances.sum());
   return result;

@@ -25,7 +25,7 @@ namespace bone
     "rotation-deviation", "Prior: standard deviation of the start about each axis") \
   value(int, shapeModes, ShapeModes, 0, ParameterRange::Between(0, 10000), "", "shape-modes", \
     "Modes of shape at the most; 0: all of the atlas") \
-  value(int, smoothModes, SmoothModes, 45, ParameterRange::Between(0, 3000), "", "smooth-modes", \
+  value(int, smoothModes, SmoothModes, 90, ParameterRange::Between(0, 3000), "", "smooth-modes", \
     "Modes of a smooth displacement beside those of the atlas") \
   value(double, smoothDeviation, SmoothDeviation, 0.0, ParameterRange::LengthOrZero(), "mm", "smooth-deviation", \
     "Standard deviation of a point's smooth displacement along each axis; 0: each mode's from the atlas, of what its subjects' shapes leave of one another") \
