@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <numeric>
@@ -207,6 +208,7 @@ Run(const Trials & trials)
     }
     const RigidPose start = Disturb(right, trials, random);
     const auto      clock = std::chrono::steady_clock::now();
+    const auto      used = std::clock();
     const auto      result = RegisterDeformable(
       atlas, views, start, trials.parameters, Execution(), [&](const Eigen::VectorXd & c, double cost) {
         if (trials.trace)
@@ -215,6 +217,7 @@ Run(const Trials & trials)
         }
       });
     row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    row["processorSeconds"] = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
     put("found", Compare(result.mesh, surface));
     // Moved onto the truth: of the shape alone, as one view does not tell the depth.
     MeshArrays      aligned = result.mesh;

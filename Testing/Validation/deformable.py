@@ -4,7 +4,8 @@
 Makes a CT of each surface of BONETK_DATA/femur_shapes, with a cortex and densities that vary, registers the model of one to
 all (or takes what a folder FEMORA holds of that), and finds each bone by the atlas of the others. Writes
 Documentation/validation/deformable.md.
-Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_VALIDATION (boneDeformableValidation).
+Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_VALIDATION (boneDeformableValidation), SUBJECTS (how many
+are found; all if it is not set).
 
     BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneDeformableValidation \\
         Testing/Validation/deformable.py
@@ -69,10 +70,12 @@ def main():
     shapes = sorted(data.glob("*.ply"))
     folder = pathlib.Path(os.environ.get("FEMORA") or tempfile.mkdtemp())
     registered = prepare(folder, shapes)
+    found = shapes[:int(os.environ.get("SUBJECTS", len(shapes)))]
+    only = ("--only", *(shape.stem for shape in found))
     commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
     nearness, regions = "", ""
     for name, options in CASES:
-        lines = run(os.environ["BONETK_VALIDATION"], registered, folder, data, *options).splitlines()
+        lines = run(os.environ["BONETK_VALIDATION"], registered, folder, data, *options, *only).splitlines()
         rows = [json.loads(line) for line in lines]
 
         def mean(key):
@@ -92,7 +95,7 @@ def main():
 
 Made by `Testing/Validation/deformable.py` at {commit}.
 
-Leave-one-out over {len(shapes)} femora: surfaces of real bones, in which cortex and densities vary from bone to bone
+Leave-one-out, {len(found)} of {len(shapes)} femora: surfaces of real bones, in which cortex and densities vary from bone to bone
 (`bonetk phantom --surface --subject`). Each is found by the atlas of the others in X-rays simulated from its CT of 1 mm voxels: the
 whole femur on 256 x 256 pixels (2.5 mm at the bone), bilinear attenuation in soft tissue of 40 HU, blur of half a pixel, quantum
 noise of 50,000 photons a pixel, views 90° apart where nothing else is said, without scatter or with a scatter-to-primary ratio of
