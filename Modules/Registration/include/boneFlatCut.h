@@ -25,6 +25,10 @@ FindFlatCuts(const MeshArrays & mesh);
  * the polynomials: no edge is left where the model ends. */
 void
 FadeToCuts(MeshArrays & mesh, const std::vector<FlatCut> & cuts, double length);
+/** \brief The levels of a model (fine to coarse), with a density that fades over `length` (mm) to the flat cuts of the
+ * first; 0: as they are. */
+std::vector<MeshArrays>
+FadeFlatCuts(std::vector<MeshArrays> levels, double length);
 } // namespace bone
 
 #endif

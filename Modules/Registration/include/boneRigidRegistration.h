@@ -40,7 +40,7 @@ struct RigidRegistrationResult
   bool                        converged{ false }; ///< the refinement ended before its steps ran out
   RegistrationQuality         quality{ RegistrationQuality::Failed };
   /** How much the cost rises, on average over the six motions, where the model is moved by 8 mm, over the cost. A wrong
-   * minimum is flat: with two views, on four bones, true poses have 0.42 and more, wrong ones 0.43 and less, most
+   * minimum is flat: with two views, on four bones, true poses have 0.41 and more, wrong ones 0.42 and less, most
    * 0.28. One view does not always tell: wrong poses of a long bone have up to 1. */
   double distinctness{ 0.0 };
   int    searches{ 0 };
@@ -97,7 +97,7 @@ struct RigidBundleResult
  *
  * The same result for any number of threads. `observe` is called after each step of the refinements with the pose (in
  * the second part, that of the first body) and its cost. Throws std::invalid_argument where a view cannot be used, with
- * its number. */
+ * its number, and where the motion of the only view is asked for. */
 RigidBundleResult
 RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodies,
                     const std::vector<RadiographView> &                    views,

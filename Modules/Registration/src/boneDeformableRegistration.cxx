@@ -6,6 +6,7 @@
 #include "boneDamping.h"
 #include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
+#include "boneFlatCut.h"
 #include "boneSymmetricEigen.h"
 
 #include <Eigen/Cholesky>
@@ -324,13 +325,12 @@ private:
   Judge(DeformableRegistrationResult & result, const Execution & execution) const
   {
     RigidRadiographParameters rigid;
-    rigid.searchTranslation = rigid.searchRotation = 0.0;
     rigid.pixels = m_P.pixels;
-    rigid.searchPixels = m_P.pixels;
     rigid.patch = m_P.patch;
     rigid.sigma = m_P.sigma;
-    rigid.iterations = 1;
-    const auto judged = RegisterRigid({ result.mesh }, m_Views, RigidPose(), rigid, execution);
+    RigidRegistrationResult judged;
+    judged.pose = RigidPose().About(CentreOf(result.mesh.points));
+    JudgePose(FadeFlatCuts({ result.mesh }, rigid.cutLength).front(), m_Views, rigid, execution, judged);
     result.costs = judged.costs;
     result.quality = judged.quality;
     result.distinctness = judged.distinctness;

@@ -144,4 +144,18 @@ FadeToCuts(MeshArrays & mesh, const std::vector<FlatCut> & cuts, double length)
     }
   }
 }
+
+std::vector<MeshArrays>
+FadeFlatCuts(std::vector<MeshArrays> levels, double length)
+{
+  const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
+  for (MeshArrays & level : levels)
+  {
+    if (!cuts.empty() && length > 0.0)
+    {
+      FadeToCuts(level, cuts, length);
+    }
+  }
+  return levels;
+}
 } // namespace bone

@@ -82,8 +82,8 @@ public:
     }
   }
 
-  /** Levenberg-Marquardt steps. */
-  void
+  /** Levenberg-Marquardt steps; whether they ended before they ran out. */
+  bool
   Descend(BundleState &                                          at,
           const Execution &                                      execution,
           const std::function<void(const RigidPose &, double)> & observe) const
@@ -115,6 +115,7 @@ public:
       }
       execution.Report((i + 1.0) / m_P.iterations);
     }
+    return isDone;
   }
 
   /** The covariance of all parameters, as RegisterRigid's. */
@@ -298,8 +299,8 @@ AdjustRigidBundle(const std::vector<MeshArrays> &                        models,
     view.motion.centre = centre;
     state.motions.push_back(view.motion);
   }
-  const RigidBundle bundle(bodies, views, parameters);
-  bundle.Descend(state, execution, observe);
+  const RigidBundle           bundle(bodies, views, parameters);
+  const bool                  converged = bundle.Descend(state, execution, observe);
   const Eigen::MatrixXd       covariance = bundle.MakeCovariance(state, execution);
   std::vector<RadiographView> moved = views;
   for (std::size_t v = 0; v < views.size(); ++v)
@@ -317,6 +318,7 @@ AdjustRigidBundle(const std::vector<MeshArrays> &                        models,
     const auto                at = RigidBundle::OfBody * static_cast<Eigen::Index>(i);
     RigidRegistrationResult & body = result.bodies[which[i]];
     body.pose = state.poses[i];
+    body.converged = converged;
     body.covariance = TurnedTo(body.pose, covariance.block<6, 6>(at, at));
     const RegistrationQuality searched = body.quality; // by more than distinctness
     JudgePose(models[which[i]], moved, parameters, execution, body);

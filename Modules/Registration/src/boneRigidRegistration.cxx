@@ -7,26 +7,10 @@
 #include "boneRigidBundle.h"
 #include "boneRigidSearch.h"
 
+#include <stdexcept>
+
 namespace bone
 {
-namespace
-{
-/** The levels with a density that fades to where the bone leaves the CT. */
-std::vector<MeshArrays>
-FadeFlatCuts(std::vector<MeshArrays> levels, const RigidRadiographParameters & parameters)
-{
-  const std::vector<FlatCut> cuts = FindFlatCuts(levels.front());
-  for (MeshArrays & level : levels)
-  {
-    if (!cuts.empty() && parameters.cutLength > 0.0)
-    {
-      FadeToCuts(level, cuts, parameters.cutLength);
-    }
-  }
-  return levels;
-}
-} // namespace
-
 RigidBundleResult
 RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodies,
                     const std::vector<RadiographView> &                    views,
@@ -35,6 +19,11 @@ RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodie
                     const Execution &                                      execution,
                     const std::function<void(const RigidPose &, double)> & observe)
 {
+  if (views.size() == 1 && (parameters.viewTranslationDeviation > 0.0 || parameters.viewRotationDeviation > 0.0))
+  {
+    throw std::invalid_argument("One view has no other that could be elsewhere: leave ViewTranslationDeviation and "
+                                "ViewRotationDeviation 0, or give a second view.");
+  }
   constexpr double         searched = 0.8; // of the time
   const auto               share = searched / static_cast<double>(bodies.size());
   RigidBundleResult        result;
@@ -44,7 +33,7 @@ RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodie
   for (std::size_t b = 0; b < bodies.size(); ++b)
   {
     const Execution part = execution.Part(share * static_cast<double>(b), share * (static_cast<double>(b) + 1.0));
-    auto            levels = FadeFlatCuts(bodies[b], parameters);
+    auto            levels = FadeFlatCuts(bodies[b], parameters.cutLength);
     result.bodies.push_back(SearchRigid(levels, views, initial, parameters, part, observe));
     models.push_back(std::move(levels.front()));
     if (result.bodies.back().quality != RegistrationQuality::Failed)

@@ -144,4 +144,12 @@ TEST(RigidBundle, ABodyThatFailsDoesNotMoveTheOthers)
   EXPECT_EQ(result.bodies[1].pose.translation, alone.pose.translation);
   EXPECT_EQ(result.bodies[1].covariance, alone.covariance);
 }
+TEST(RigidBundle, TheOnlyViewCannotBeElsewhere)
+{
+  const MeshArrays          body = Body(4);
+  RigidRadiographParameters parameters = Refinement();
+  parameters.viewRotationDeviation = 0.1;
+  EXPECT_THROW(RegisterRigidBodies({ { body } }, { TwoXRays(body, Truth)[0] }, Start, parameters, Execution()),
+               std::invalid_argument);
+}
 } // namespace
