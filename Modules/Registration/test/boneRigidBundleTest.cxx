@@ -152,4 +152,35 @@ TEST(RigidBundle, TheOnlyViewCannotBeElsewhere)
   EXPECT_THROW(RegisterRigidBodies({ { body } }, { TwoXRays(body, Truth)[0] }, Start, parameters, Execution()),
                std::invalid_argument);
 }
+TEST(RigidBundle, FindsWhereAViewIsByTwoBodies)
+{
+  // The motion's centre lies between them.
+  const MeshArrays body = Body(12), neighbour = Neighbour();
+  auto             xrays = TwoXRays(body, Truth);
+  Add(xrays, TwoXRays(neighbour, Truth));
+  const RigidPose motion = PoseOf(0.3, 0.4, -0.6, 0.01, -0.008, 0.012);
+  RigidPose       back;
+  back.rotation = motion.rotation.transpose();
+  back.centre = motion.centre;
+  back.translation = -(back.rotation * motion.translation);
+  xrays[1].view = back.ToModelSpace(xrays[1].view);
+  RigidRadiographParameters parameters = Refinement();
+  parameters.viewTranslationDeviation = 1.0;
+  parameters.viewRotationDeviation = 0.8;
+  const auto result = RegisterRigidBodies({ { body }, { neighbour } }, xrays, Start, parameters, Execution());
+  EXPECT_LT(LargestDistance(body, result.bodies[0].pose, Truth), 0.05);
+  EXPECT_LT(LargestDistance(neighbour, result.bodies[1].pose, Truth), 0.05);
+  EXPECT_LT(LargestDistance(neighbour, result.views[1].motion, motion), 0.05);
+}
+
+TEST(RigidBundle, CovariancesAreAlongTheGeometrysAxes)
+{
+  // Turned by a right angle about z, the view's depth, y, is the model's x.
+  const MeshArrays body = Body(12);
+  const RigidPose  turned = PoseOf(0, 0, 0, 0, 0, std::acos(0.0));
+  const auto       xray = TwoXRays(body, turned)[0];
+  const auto       result = RegisterRigid({ body }, { xray }, turned, Refinement(), Execution());
+  EXPECT_LT(LargestDistance(body, result.pose, turned), 0.1);
+  EXPECT_GT(result.covariance(1, 1), 9.0 * result.covariance(0, 0));
+}
 } // namespace
