@@ -156,13 +156,15 @@ Run(const Trials & trials)
     subjects.emplace_back(entry.path().stem().string(), ReadMeshArrays(entry.path().string()));
   }
   std::sort(subjects.begin(), subjects.end(), [](const auto & a, const auto & b) { return a.first < b.first; });
+  std::uint64_t index = 0;
   for (const auto & [name, truth] : subjects)
   {
+    // Each subject has noise and a start of its own.
+    std::mt19937_64 random(1000 * trials.seed + index++);
     if (!trials.only.empty() && std::find(trials.only.begin(), trials.only.end(), name) == trials.only.end())
     {
       continue;
     }
-    std::mt19937_64 random(trials.seed);
     const auto      atlas = Train(subjects, name);
     const auto      surface = ReadTriangleSurface(trials.shapes + "/" + name + ".ply");
     const auto      ct = Embed(ReadCT(trials.cts + "/" + name + ".mha"), 40.0);

@@ -10,6 +10,7 @@
 #include "boneSmoothModes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -39,6 +40,19 @@ ExtentOf(const std::vector<Vector3> & points)
   return (upper - lower).norm();
 }
 
+constexpr double leastVolume = 1e-30; // a region that is not there
+
+/** How the signed volume of a tetrahedron rises with each of its points. */
+std::array<Vector3, 4>
+VolumeSlopes(const std::vector<Vector3> & points, const Id4 & ids)
+{
+  const auto             at = [&](std::size_t v) { return points[static_cast<std::size_t>(ids[v])]; };
+  const Vector3          a = at(1) - at(0), b = at(2) - at(0), c = at(3) - at(0);
+  std::array<Vector3, 4> slopes{ Vector3::Zero(), b.cross(c) / 6.0, c.cross(a) / 6.0, a.cross(b) / 6.0 };
+  slopes[0] = -(slopes[1] + slopes[2] + slopes[3]);
+  return slopes;
+}
+
 /** Volume, mean density and their product of each region, and last of the whole. */
 Eigen::MatrixXd
 MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const std::vector<double> & means)
@@ -59,7 +73,7 @@ MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const 
       sums(row, 2) += volume * means[t];
     }
   }
-  sums.col(1) = sums.col(2).array() / sums.col(0).array().max(1e-30);
+  sums.col(1) = sums.col(2).array() / sums.col(0).array().max(leastVolume);
   return sums;
 }
 
@@ -212,6 +226,12 @@ DeformableModel::Coarsen(std::size_t tetrahedra, Eigen::Index modes, const Execu
 Eigen::MatrixXd
 DeformableModel::MeasureRegions(const Eigen::VectorXd & coefficients) const
 {
+  return MeasureCells(mean, this->MovePoints(coefficients), this->CellDensities(coefficients));
+}
+
+std::vector<double>
+DeformableModel::CellDensities(const Eigen::VectorXd & coefficients) const
+{
   std::vector<double> means = meanDensities;
   for (std::size_t k = 0; k < cellDensities.size(); ++k)
   {
@@ -221,7 +241,51 @@ DeformableModel::MeasureRegions(const Eigen::VectorXd & coefficients) const
       means[t] += b * cellDensities[k][t];
     }
   }
-  return MeasureCells(mean, this->MovePoints(coefficients), means);
+  return means;
+}
+
+std::vector<Eigen::MatrixXd>
+DeformableModel::RegionSlopes(const Eigen::VectorXd & coefficients) const
+{
+  const std::vector<Vector3> points = this->MovePoints(coefficients);
+  const std::vector<double>  means = this->CellDensities(coefficients);
+  const Eigen::MatrixXd      at = MeasureCells(mean, points, means);
+  const Eigen::Index         whole = at.rows() - 1;
+  const auto                 size = static_cast<Eigen::Index>(3 * points.size());
+  const auto                 regionOf = [this](std::size_t t) { return mean.region.empty() ? 0 : mean.region[t]; };
+  // By the coordinates of the points.
+  Eigen::MatrixXd ofVolume = Eigen::MatrixXd::Zero(size, at.rows()), ofMass = ofVolume;
+  for (std::size_t t = 0; t < means.size(); ++t)
+  {
+    const Id4 &                  ids = mean.tetrahedra[t];
+    const std::array<Vector3, 4> slopes = VolumeSlopes(points, ids);
+    for (std::size_t v = 0; v < 4; ++v)
+    {
+      for (const Eigen::Index row : { static_cast<Eigen::Index>(regionOf(t)), whole })
+      {
+        ofVolume.col(row).segment<3>(3 * ids[v]) += slopes[v];
+        ofMass.col(row).segment<3>(3 * ids[v]) += means[t] * slopes[v];
+      }
+    }
+  }
+  std::vector<Eigen::MatrixXd> result;
+  const auto                   put = [&](const Eigen::VectorXd & volume, const Eigen::VectorXd & mass) {
+    Eigen::MatrixXd slope(at.rows(), 3);
+    slope.col(0) = volume;
+    slope.col(1) = (mass - at.col(1).cwiseProduct(volume)).array() / at.col(0).array().max(leastVolume);
+    slope.col(2) = mass;
+    result.push_back(std::move(slope));
+  };
+  for (const auto & displacement : displacements)
+  {
+    const Eigen::VectorXd move = StackPoints(displacement);
+    put(ofVolume.transpose() * move, ofMass.transpose() * move);
+  }
+  for (const auto & change : cellDensities)
+  {
+    put(Eigen::VectorXd::Zero(at.rows()), MeasureCells(mean, points, change).col(2));
+  }
+  return result;
 }
 
 MeshArrays

@@ -52,6 +52,10 @@ struct DeformableModel
   Eigen::MatrixXd
   MeasureRegions(const Eigen::VectorXd & coefficients) const;
 
+  /** For each coefficient, how the table of MeasureRegions rises with it. */
+  std::vector<Eigen::MatrixXd>
+  RegionSlopes(const Eigen::VectorXd & coefficients) const;
+
   /** With as many tetrahedra or fewer, where the mean can be simplified so far. */
   CoarseModel
   Coarsen(std::size_t tetrahedra, Eigen::Index modes, const Execution & execution) const;
@@ -61,6 +65,9 @@ struct DeformableModel
   Synthesize(const Eigen::VectorXd & coefficients) const;
 
 private:
+  /** Means of the cells. */
+  std::vector<double>
+  CellDensities(const Eigen::VectorXd & coefficients) const;
   void
   AddDensity(const std::vector<double> & change);
   void

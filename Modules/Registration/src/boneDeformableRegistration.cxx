@@ -54,7 +54,7 @@ public:
     DeformableRegistrationResult result;
     DeformableState              state = this->Search(execution.Part(0.0, 0.3));
     std::vector<int>             resolutions;
-    for (int pixels = m_P.searchPixels; pixels < m_P.pixels; pixels *= 2)
+    for (int pixels = this->SearchPixels(); pixels < m_P.pixels; pixels *= 2)
     {
       resolutions.push_back(pixels);
     }
@@ -64,14 +64,12 @@ public:
       const auto      share = 0.6 / static_cast<double>(resolutions.size());
       const Execution part = execution.Part(0.3 + share * static_cast<double>(i), 0.3 + share * (i + 1.0));
       const bool      last = i + 1 == resolutions.size();
-      const bool      intensities = last && m_P.intensities;
       DeformableCost  cost(m_Model, m_Views, m_P, resolutions[i]);
-      auto            values = this->Descend(cost, state, result, part.Part(0.0, intensities ? 0.5 : 1.0));
-      if (intensities)
+      if (last && m_P.intensities)
       {
         cost.UseIntensities(state, part.Silent());
-        values = this->Descend(cost, state, result, part.Part(0.5, 1.0));
       }
+      const auto values = this->Descend(cost, state, result, part);
       if (last)
       {
         this->SetCovariance(cost, state, values, result, part);
@@ -99,6 +97,15 @@ private:
     m_Prior.segment<3>(3).setConstant(precision(m_P.rotationDeviation * degree));
   }
 
+  /** One view, which shows fewer outlines, is searched on a finer image. */
+  int
+  SearchPixels() const
+  {
+    constexpr int ofOne = 128, ofSeveral = 64;
+    const int     automatic = m_Views.size() == 1 ? ofOne : ofSeveral;
+    return std::min(m_P.pixels, m_P.searchPixels > 0 ? m_P.searchPixels : automatic);
+  }
+
   /** Pose and leading modes of shape by an evolution strategy, on small images and with each cell's mean density. */
   DeformableState
   Search(const Execution & execution) const
@@ -118,7 +125,7 @@ private:
     {
       return state;
     }
-    const DeformableCost cost(m_Model, m_Views, m_P, m_P.searchPixels);
+    const DeformableCost cost(m_Model, m_Views, m_P, this->SearchPixels());
     const CoarseModel    model = m_Model.Coarsen(tetrahedra, shape, execution.Silent());
     EvolutionStrategy    strategy(
       Eigen::VectorXd::Zero(box.size()), 0.4, m_P.population, static_cast<std::uint64_t>(m_P.seed));
@@ -216,7 +223,7 @@ private:
           DeformableRegistrationResult & result,
           const Execution &              execution) const
   {
-    constexpr double least = 0.5; // of the logarithm of the posterior, whose own spread is half the parameters' number
+    constexpr double least = 2.0; // of the logarithm of the posterior, whose own spread is half the parameters' number
     const Execution  silent = execution.Silent();
     auto             values = cost.Evaluate(at, silent);
     Damping          damping;
@@ -340,19 +347,11 @@ private:
   std::vector<RegionEstimate>
   MeasureRegions(const DeformableRegistrationResult & result) const
   {
-    constexpr double             step = 0.5;
-    const auto                   count = result.coefficients.size();
-    const auto                   covariance = result.covariance.bottomRightCorner(count, count);
-    const Eigen::MatrixXd        at = m_Model.MeasureRegions(result.coefficients);
-    std::vector<Eigen::MatrixXd> slopes;
-    for (Eigen::Index k = 0; k < count; ++k)
-    {
-      const Eigen::VectorXd move = step * Eigen::VectorXd::Unit(count, k);
-      slopes.emplace_back(
-        (m_Model.MeasureRegions(result.coefficients + move) - m_Model.MeasureRegions(result.coefficients - move)) /
-        (2.0 * step));
-    }
-    std::vector<RegionEstimate> regions;
+    const auto                         count = result.coefficients.size();
+    const auto                         covariance = result.covariance.bottomRightCorner(count, count);
+    const Eigen::MatrixXd              at = m_Model.MeasureRegions(result.coefficients);
+    const std::vector<Eigen::MatrixXd> slopes = m_Model.RegionSlopes(result.coefficients);
+    std::vector<RegionEstimate>        regions;
     for (Eigen::Index r = 0; r < at.rows(); ++r)
     {
       std::array<double, 3> deviations{};

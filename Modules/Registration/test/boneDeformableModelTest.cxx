@@ -79,6 +79,23 @@ TEST(DeformableModel, MeasuresRegionsAndTheWhole)
   EXPECT_NEAR(at(3, 1), 1202.0 / 3.0, 1e-9);
   EXPECT_EQ(at(0, 0), 0.0);
 }
+TEST(DeformableModel, TellsHowRegionsRiseWithEachCoefficient)
+{
+  constexpr double      step = 1e-4;
+  const DeformableModel model = Model();
+  const auto            count = model.GetNumberOfCoefficients();
+  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(count, -0.5, 0.7);
+  const auto            slopes = model.RegionSlopes(at);
+  ASSERT_EQ(static_cast<Eigen::Index>(slopes.size()), count);
+  for (Eigen::Index k = 0; k < count; ++k)
+  {
+    const Eigen::VectorXd move = step * Eigen::VectorXd::Unit(count, k);
+    const Eigen::MatrixXd difference =
+      (model.MeasureRegions(at + move) - model.MeasureRegions(at - move)) / (2.0 * step);
+    EXPECT_LE((slopes[static_cast<std::size_t>(k)] - difference).norm(), 1e-5 * (1.0 + difference.norm())) << k;
+  }
+}
+
 TEST(DeformableModel, CoarsensAndKeepsTheModesOfThePointsThatStay)
 {
   StatisticalModelContent atlas = test::Atlas();
