@@ -35,8 +35,8 @@ namespace bone
     "Modes of density at the most; 0: all of the atlas") \
   value(int, pixels, Pixels, 256, ParameterRange::Between(32, 4096), "pixels", "pixels", \
     "Longer side of the X-rays in the last steps") \
-  value(int, searchPixels, SearchPixels, 0, ParameterRange::Between(0, 4096), "pixels", "search-pixels", \
-    "Longer side of the X-rays in the search and the first steps; 0: 64, and 128 of one view alone") \
+  value(int, searchPixels, SearchPixels, 128, ParameterRange::Between(32, 4096), "pixels", "search-pixels", \
+    "Longer side of the X-rays in the first steps") \
   value(int, patch, Patch, 8, ParameterRange::Between(4, 1024), "pixels", "patch", \
     "Side of the patches in which gradients are compared") \
   value(double, sigma, Sigma, 1.0, ParameterRange::Between(0.3, 20.0), "pixels", "sigma", \

@@ -59,12 +59,13 @@ MetricSum::EstimatePrecision() const
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
   Eigen::MatrixXd       damped = scaled;
   damped.diagonal().array() += damping;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
-  const double                       curvature = solver.solve(scaled).trace();
-  double                             largest = 0.0;
+  // The trace of a product of symmetric matrices is the sum of the products of their elements.
+  const Eigen::MatrixXd inverse = damped.ldlt().solve(Eigen::MatrixXd::Identity(damped.rows(), damped.cols()));
+  const double          curvature = inverse.cwiseProduct(scaled).sum();
+  double                largest = 0.0;
   for (const Eigen::MatrixXd & scatter : scatters)
   {
-    largest = std::max(largest, solver.solve(scale.asDiagonal() * scatter * scale.asDiagonal()).trace());
+    largest = std::max(largest, inverse.cwiseProduct(scale.asDiagonal() * scatter * scale.asDiagonal()).sum());
   }
   return largest > 0.0 ? curvature / largest : 0.0;
 }
