@@ -118,7 +118,8 @@ that hold where the bone's own registered model has them. Seconds: median by the
 ## Regions
 
 Mean absolute error ± stated standard deviation (how many 95 % intervals hold the value of the bone's own registered model): volume
-and density times volume (mass) in %, mean density in HU; last, of the mass beside that of the CT's voxels. The medullary cavity's density is near 0, so that % of its mass say nothing.
+and density times volume (mass) in %, mean density in HU; last, of the mass beside that of the CT's voxels. The medullary
+cavity's density is near 0, so that % of its mass say nothing.
 
 | views | region | volume | density | mass | mass, voxels |
 |---|---|---|---|---|---|

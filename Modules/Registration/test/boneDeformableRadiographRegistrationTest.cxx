@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace
 {
 using namespace bone;
@@ -239,6 +241,35 @@ TEST(DeformableRadiographRegistration, OneViewNeedsAPrior)
   // The view looks along y. What it does not tell is as the prior has it.
   EXPECT_GT(covariance(1, 1), 4.0 * covariance(0, 0));
   EXPECT_LT(covariance(1, 1), 4.0 * 1.01);
+}
+
+TEST(DeformableRadiographRegistration, OneViewMustBeMoreDistinctThanTwo)
+{
+  // Noise leaves little of the edges.
+  auto                             xrays = LineIntegrals();
+  std::mt19937_64                  random(3);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (RadiographView & xray : xrays)
+  {
+    for (float & x : xray.values)
+    {
+      x += static_cast<float>(noise(random));
+    }
+  }
+  DeformableRadiographParameters parameters = Parameters();
+  parameters.searchTranslation = parameters.searchRotation = 0.0;
+  parameters.translationDeviation = parameters.rotationDeviation = 2.0;
+  parameters.intensities = false;
+  const auto two = RegisterDeformable(Atlas(), xrays, Truth, parameters, Execution());
+  xrays.pop_back();
+  const auto one = RegisterDeformable(Atlas(), xrays, Truth, parameters, Execution());
+  for (const double distinctness : { one.distinctness, two.distinctness })
+  {
+    ASSERT_GT(distinctness, 0.45);
+    ASSERT_LT(distinctness, 2.0);
+  }
+  EXPECT_EQ(two.quality, RegistrationQuality::Ok);
+  EXPECT_EQ(one.quality, RegistrationQuality::Suspect);
 }
 
 TEST(DeformableRadiographRegistration, ASurfaceThatMayLieOutsideIsCounted)
