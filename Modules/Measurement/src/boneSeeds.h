@@ -1,0 +1,53 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#ifndef boneSeeds_h
+#define boneSeeds_h
+
+#include "boneLandmarkIO.h"
+#include "boneTriangleSurface.h"
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace bone
+{
+/** Why a primitive cannot be fitted. */
+struct MissingSeed : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+/** \struct SurfaceSeeds
+ * \brief A surface with the areas of its points, and the landmarks that fits on it start from. */
+struct SurfaceSeeds
+{
+  /** The surface must outlive this. Of landmarks of one name the first counts. */
+  SurfaceSeeds(const TriangleSurface & closed, const std::vector<Landmark> & landmarks, double farthest);
+
+  /** Throws MissingSeed where the landmark was not given, or lies beyond the surface and further than `farthest` (mm)
+   * from it. */
+  const Vector3 &
+  Find(const std::string & name) const;
+
+  const TriangleSurface & surface;
+  std::vector<double>     areas; ///< #p, mm^2, a third of the triangles around each point
+
+private:
+  struct Seed
+  {
+    Vector3 point;
+    double  distance; // mm beyond the surface; 0 within
+  };
+  std::map<std::string, Seed> m_Seeds;
+  double                      m_Farthest;
+};
+
+/** Area of each point, mm^2: a third of that of the triangles around it. */
+std::vector<double>
+PointAreas(const TriangleSurface & surface);
+} // namespace bone
+
+#endif
