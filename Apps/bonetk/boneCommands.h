@@ -52,6 +52,8 @@ AddRegisterCommand(CLI::App & app, Action & action);
 void
 AddRegisterDeformCommand(CLI::App & group, Action & action);
 void
+AddMeasureCommand(CLI::App & app, Action & action);
+void
 AddValidateCommand(CLI::App & app, Action & action);
 void
 AddInfoCommand(CLI::App & app, Action & action);

@@ -17,6 +17,7 @@ struct Measure
   std::string         unit;       ///< "mm", "degree", "mm^3", ...; empty: none
   std::string         definition; ///< what it is, with its source
   std::string         text{};     ///< in place of numbers, where it is a word
+  double              error{ 0 }; ///< bound of the value's error, in its unit; 0: up to rounding
 };
 
 /** A measure that could not be taken. */

@@ -16,7 +16,7 @@ namespace
 {
 constexpr double HeadReach = 45.0; // mm, no head is larger
 constexpr double HeadShell = 0.3;  // of the radius: points so near to the sphere are looked at
-constexpr int    LeastHeadPoints = 12;
+constexpr int    LeastHeadPoints = 36;
 constexpr double LargestDeviation = 0.1; // of the radius: beyond, it is no sphere
 constexpr int    ShaftSections = 21;
 constexpr double NeckStep = 0.5;      // mm between sections
@@ -34,9 +34,9 @@ FirstHeadRadius(const SurfaceSeeds & bone, const Vector3 & centre, const Vector3
 {
   std::vector<std::pair<double, double>> distances; // with area
   double                                 area = 0.0;
-  for (std::size_t i = 0; i < bone.surface.points.size(); ++i)
+  for (std::size_t i = 0; i < bone.middles.size(); ++i)
   {
-    const Vector3 x = bone.surface.points[i] - centre;
+    const Vector3 x = bone.middles[i] - centre;
     const double  distance = x.norm();
     if (distance < HeadReach && x.dot(away) > 0.3 * distance)
     {
@@ -66,12 +66,12 @@ FitHead(const SurfaceSeeds & bone, const Vector3 & seed, const Vector3 & away)
   {
     std::vector<Vector3> points;
     std::vector<double>  weights;
-    for (std::size_t i = 0; i < bone.surface.points.size(); ++i)
+    for (std::size_t i = 0; i < bone.middles.size(); ++i)
     {
-      const Vector3 x = bone.surface.points[i] - head.centre;
+      const Vector3 x = bone.middles[i] - head.centre;
       if (x.dot(away) > 0.0 && std::abs(x.norm() - head.radius) < HeadShell * head.radius)
       {
-        points.push_back(bone.surface.points[i]);
+        points.push_back(bone.middles[i]);
         weights.push_back(bone.areas[i]);
       }
     }

@@ -10,27 +10,16 @@
 
 namespace bone
 {
-std::vector<double>
-PointAreas(const TriangleSurface & surface)
-{
-  std::vector<double> areas(surface.points.size(), 0.0);
-  for (const auto & t : surface.triangles)
-  {
-    const Vector3 & a = surface.points[t[0]];
-    const double    area = 0.5 * (surface.points[t[1]] - a).cross(surface.points[t[2]] - a).norm();
-    for (const IdType id : t)
-    {
-      areas[id] += area / 3.0;
-    }
-  }
-  return areas;
-}
-
 SurfaceSeeds::SurfaceSeeds(const TriangleSurface & closed, const std::vector<Landmark> & landmarks, double farthest)
   : surface(closed)
-  , areas(PointAreas(closed))
   , m_Farthest(farthest)
 {
+  for (const auto & t : closed.triangles)
+  {
+    const Vector3 &a = closed.points[t[0]], &b = closed.points[t[1]], &c = closed.points[t[2]];
+    middles.insert(middles.end(), { 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) });
+    areas.insert(areas.end(), 3, (b - a).cross(c - a).norm() / 6.0);
+  }
   const TriangleDistance distance(closed.points, closed.triangles);
   for (const Landmark & landmark : landmarks)
   {

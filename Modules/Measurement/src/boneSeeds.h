@@ -21,7 +21,7 @@ struct MissingSeed : std::runtime_error
 };
 
 /** \struct SurfaceSeeds
- * \brief A surface with the areas of its points, and the landmarks that fits on it start from. */
+ * \brief A surface, points for integrals over it, and the landmarks that fits on it start from. */
 struct SurfaceSeeds
 {
   /** The surface must outlive this. Of landmarks of one name the first counts. */
@@ -33,7 +33,11 @@ struct SurfaceSeeds
   Find(const std::string & name) const;
 
   const TriangleSurface & surface;
-  std::vector<double>     areas; ///< #p, mm^2, a third of the triangles around each point
+  /** The middles of each triangle's edges, with a third of its area each (mm^2): sums over them are exact integrals of
+   * quadratic functions over the surface. Fits to them do not depend on whether the triangles' corners lie on the bone,
+   * or outside so that the triangles lie on it in the mean. */
+  std::vector<Vector3> middles;
+  std::vector<double>  areas;
 
 private:
   struct Seed
@@ -44,10 +48,6 @@ private:
   std::map<std::string, Seed> m_Seeds;
   double                      m_Farthest;
 };
-
-/** Area of each point, mm^2: a third of that of the triangles around it. */
-std::vector<double>
-PointAreas(const TriangleSurface & surface);
 } // namespace bone
 
 #endif

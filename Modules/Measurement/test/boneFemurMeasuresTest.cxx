@@ -62,8 +62,8 @@ TEST(FemurMeasures, KnownAnglesAndSizesAreFound)
     const auto femur = FitFemur(shape.Surface(), shape.Landmarks());
     const auto list = MeasureFemur(femur);
     EXPECT_TRUE(list.missing.empty());
-    EXPECT_NEAR(ValueOf(list, "headRadius"), shape.headRadius, 0.01);
-    EXPECT_NEAR((femur.head->centre - shape.HeadCentre()).norm(), 0.0, 0.01);
+    EXPECT_NEAR(ValueOf(list, "headRadius"), shape.headRadius, 0.05);
+    EXPECT_NEAR((femur.head->centre - shape.HeadCentre()).norm(), 0.0, 0.05);
     EXPECT_NEAR(ValueOf(list, "neckShaftAngle"), shape.neckShaftAngle, 0.3);
     EXPECT_NEAR(ValueOf(list, "anteversion"), shape.anteversion, 0.5);
     EXPECT_NEAR(ValueOf(list, "femoralOffset"), shape.HeadCentre().head<2>().norm(), 0.1);
@@ -142,7 +142,7 @@ TEST(FemurMeasures, HardlyDependOnWhereTheLandmarksAre)
       landmark.point += Vector3(uniform(random), uniform(random), uniform(random));
     }
     const auto list = MeasureFemur(FitFemur(surface, landmarks));
-    EXPECT_NEAR(ValueOf(list, "headRadius"), shape.headRadius, 0.01);
+    EXPECT_NEAR(ValueOf(list, "headRadius"), shape.headRadius, 0.05);
     EXPECT_NEAR(ValueOf(list, "neckShaftAngle"), shape.neckShaftAngle, 0.3);
     EXPECT_NEAR(ValueOf(list, "anteversion"), shape.anteversion, 0.5);
   }

@@ -1,0 +1,210 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneCommands.h"
+#include "boneOptions.h"
+#include "boneParameterOptions.h"
+
+#include "boneAtomicFile.h"
+#include "boneFileName.h"
+#include "boneHierarchyIO.h"
+#include "boneLandmarkIO.h"
+#include "boneMeasureReport.h"
+#include "boneMeshIO.h"
+
+#include <cstdio>
+#include <sstream>
+
+namespace bone
+{
+namespace
+{
+struct MeasureOptions
+{
+  std::string         model;
+  std::string         landmarks;
+  std::string         standard;
+  std::vector<double> balls, cylinders, capsules, halfSpaces;
+  MeasureParameters   parameters;
+  std::string         output;
+  std::string         landmarksOutput;
+};
+
+bool
+IsSurface(const std::string & path)
+{
+  return HasExtension(path, ".ply") || HasExtension(path, ".stl") || HasExtension(path, ".vtp");
+}
+
+/** Of a hierarchy the first level. */
+MeshArrays
+ReadFirstLevel(const std::string & path)
+{
+  return HasExtension(path, ".vtu") ? ReadMeshArrays(path) : ReadHierarchy(path)->GetLevels().front().mesh->GetArrays();
+}
+
+std::string
+DescribePoint(const double * x)
+{
+  std::ostringstream text;
+  text << '(' << x[0] << ", " << x[1] << ", " << x[2] << ')';
+  return text.str();
+}
+
+/** The solids of the command line: four numbers a ball, seven a cylinder or capsule, six a half-space. */
+std::vector<NamedSolid>
+ReadSolids(const MeasureOptions & options)
+{
+  std::vector<NamedSolid> solids;
+  const auto              add =
+    [&solids](const std::vector<double> & numbers, std::size_t each, const char * name, const auto & make) {
+      for (std::size_t i = 0; i < numbers.size(); i += each)
+      {
+        NamedSolid named = make(numbers.data() + i);
+        named.name = name + std::to_string(i / each + 1);
+        solids.push_back(named);
+      }
+    };
+  const auto point = [](const double * x) { return Vector3(x[0], x[1], x[2]); };
+  const auto say = [](const auto &... parts) {
+    std::ostringstream text;
+    (text << ... << parts);
+    return text.str();
+  };
+  try
+  {
+    add(options.balls, 4, "ball", [&](const double * x) {
+      return NamedSolid{ "",
+                         say("the ball of radius ", x[3], " mm about ", DescribePoint(x)),
+                         MakeBall(point(x), x[3]) };
+    });
+    add(options.cylinders, 7, "cylinder", [&](const double * x) {
+      return NamedSolid{
+        "",
+        say("the cylinder of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
+        MakeCylinder(point(x), point(x + 3), x[6])
+      };
+    });
+    add(options.capsules, 7, "capsule", [&](const double * x) {
+      return NamedSolid{ "",
+                         say(
+                           "the capsule of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
+                         MakeCapsule(point(x), point(x + 3), x[6]) };
+    });
+    add(options.halfSpaces, 6, "halfSpace", [&](const double * x) {
+      return NamedSolid{ "",
+                         say(
+                           "the half-space from the plane through ", DescribePoint(x), " along ", DescribePoint(x + 3)),
+                         MakeHalfSpace(point(x), point(x + 3)) };
+    });
+  }
+  catch (const std::invalid_argument & error)
+  {
+    throw UsageError(error.what());
+  }
+  return solids;
+}
+
+std::vector<Landmark>
+ReadGivenLandmarks(const MeasureOptions & options, const MeshArrays & model)
+{
+  if (options.landmarks.empty())
+  {
+    return {};
+  }
+  const auto landmarks = ReadLandmarks(options.landmarks);
+  return options.standard.empty()
+           ? landmarks
+           : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model, options.parameters.landmarkReach);
+}
+
+void
+PrintMeasures(const MeasureReport & report, Session & session)
+{
+  std::ostringstream text;
+  for (const Measure & measure : report.list.measures)
+  {
+    text << measure.name << ':' << (measure.text.empty() ? "" : " ") << measure.text;
+    for (const double value : measure.value)
+    {
+      char number[40];
+      std::snprintf(number, sizeof(number), " %.6g", value);
+      text << number;
+    }
+    text << (measure.unit.empty() ? "" : " ") << measure.unit << '\n';
+  }
+  for (const MissingMeasure & missing : report.list.missing)
+  {
+    text << missing.name << ": not measured: " << missing.reason << '\n';
+  }
+  session.Print(text.str());
+}
+
+void
+RunMeasure(const MeasureOptions & options, Session & session)
+{
+  const auto solids = ReadSolids(options);
+  const bool surface = IsSurface(options.model);
+  if (surface && !(solids.empty() && options.standard.empty()))
+  {
+    throw UsageError(
+      "a surface has no density and no topology to carry landmarks by: solids and --standard need a model");
+  }
+  if (options.landmarks.empty() && !(options.standard.empty() && options.landmarksOutput.empty()))
+  {
+    throw UsageError("--standard and --write-landmarks need --landmarks");
+  }
+  VerifyOutputs({ { options.output, { ".json" } }, { options.landmarksOutput, { ".mrk.json" } } });
+  MeasureReport report;
+  if (surface)
+  {
+    report =
+      MeasureSurface(ReadTriangleSurface(options.model), ReadGivenLandmarks(options, MeshArrays()), options.parameters);
+  }
+  else
+  {
+    const MeshArrays model = ReadFirstLevel(options.model);
+    report = MeasureModel(model, ReadGivenLandmarks(options, model), solids, options.parameters);
+  }
+  PrintMeasures(report, session);
+  nlohmann::json json = ReportMeasures(report);
+  json["model"] = options.model;
+  WriteFileAtomically(options.output, json.dump(2) + '\n');
+  if (!options.landmarksOutput.empty())
+  {
+    WriteLandmarks(report.landmarks, options.landmarksOutput);
+  }
+}
+} // namespace
+
+void
+AddMeasureCommand(CLI::App & app, Action & action)
+{
+  auto   options = std::make_shared<MeasureOptions>();
+  auto * command =
+    app.add_subcommand("measure", "Landmarks and measures of a model, each with value, unit and definition");
+  command
+    ->add_option(
+      "model", options->model, "Model (.vtu, .hierarchy.json), or a closed surface (.ply, .stl, .vtp) without density")
+    ->required();
+  command->add_option(
+    "--landmarks",
+    options->landmarks,
+    "Landmarks (.mrk.json): femoral_head, femoral_neck, shaft_proximal, shaft_distal, medial_condyle and "
+    "lateral_condyle for a femur's measures; see the guide");
+  command->add_option("--standard",
+                      options->standard,
+                      "Model of the same topology that the landmarks were placed on; they are carried to the model");
+  const auto solid = [command](const char * name, std::vector<double> & numbers, int each, const char * help) {
+    command->add_option(name, numbers, help)->type_size(each)->expected(1, 1000)->allow_extra_args(false);
+  };
+  solid("--ball", options->balls, 4, "Ball to measure: x y z radius, in mm; may be repeated");
+  solid("--cylinder", options->cylinders, 7, "Cylinder: x y z of one end, x y z of the other, radius");
+  solid("--capsule", options->capsules, 7, "The same with round ends beyond");
+  solid("--half-space", options->halfSpaces, 6, "Half-space: x y z of a point of its plane, x y z into it");
+  AddParameterOptions(command, options->parameters);
+  command->add_option("-o,--output", options->output, "Report to write (.json)")->required();
+  command->add_option("--write-landmarks", options->landmarksOutput, "Landmarks on the model to write (.mrk.json)");
+  command->callback([options, &action] { action = [options](Session & session) { RunMeasure(*options, session); }; });
+}
+} // namespace bone
