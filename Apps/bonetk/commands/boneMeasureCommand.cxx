@@ -56,15 +56,23 @@ std::vector<NamedSolid>
 ReadSolids(const MeasureOptions & options)
 {
   std::vector<NamedSolid> solids;
-  const auto              add =
-    [&solids](const std::vector<double> & numbers, std::size_t each, const char * name, const auto & make) {
-      for (std::size_t i = 0; i < numbers.size(); i += each)
-      {
-        NamedSolid named = make(numbers.data() + i);
-        named.name = name + std::to_string(i / each + 1);
-        solids.push_back(named);
-      }
-    };
+  const auto              add = [&solids](const std::vector<double> & numbers,
+                             std::size_t                 each,
+                             const char *                name,
+                             const char *                option,
+                             const auto &                make) {
+    if (numbers.size() % each != 0)
+    {
+      throw UsageError(std::string(option) + " needs " + std::to_string(each) + " numbers a solid, but " +
+                       std::to_string(numbers.size()) + " were given");
+    }
+    for (std::size_t i = 0; i < numbers.size(); i += each)
+    {
+      NamedSolid named = make(numbers.data() + i);
+      named.name = name + std::to_string(i / each + 1);
+      solids.push_back(named);
+    }
+  };
   const auto point = [](const double * x) { return Vector3(x[0], x[1], x[2]); };
   const auto say = [](const auto &... parts) {
     std::ostringstream text;
@@ -73,25 +81,25 @@ ReadSolids(const MeasureOptions & options)
   };
   try
   {
-    add(options.balls, 4, "ball", [&](const double * x) {
+    add(options.balls, 4, "ball", "--ball", [&](const double * x) {
       return NamedSolid{ "",
                          say("the ball of radius ", x[3], " mm about ", DescribePoint(x)),
                          MakeBall(point(x), x[3]) };
     });
-    add(options.cylinders, 7, "cylinder", [&](const double * x) {
+    add(options.cylinders, 7, "cylinder", "--cylinder", [&](const double * x) {
       return NamedSolid{
         "",
         say("the cylinder of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
         MakeCylinder(point(x), point(x + 3), x[6])
       };
     });
-    add(options.capsules, 7, "capsule", [&](const double * x) {
+    add(options.capsules, 7, "capsule", "--capsule", [&](const double * x) {
       return NamedSolid{ "",
                          say(
                            "the capsule of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
                          MakeCapsule(point(x), point(x + 3), x[6]) };
     });
-    add(options.halfSpaces, 6, "halfSpace", [&](const double * x) {
+    add(options.halfSpaces, 6, "halfSpace", "--half-space", [&](const double * x) {
       return NamedSolid{ "",
                          say(
                            "the half-space from the plane through ", DescribePoint(x), " along ", DescribePoint(x + 3)),
