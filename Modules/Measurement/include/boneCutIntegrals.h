@@ -49,7 +49,7 @@ struct SolidDensity
 SolidDensity
 IntegrateSolid(const MeshArrays & mesh,
                const Solid &      solid,
-               double             relativeError = 1e-3,
+               double             relativeError = DefaultSolidError,
                const Execution &  execution = {},
                std::size_t        mostPieces = 500000);
 } // namespace bone

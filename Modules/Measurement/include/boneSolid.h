@@ -40,6 +40,9 @@ struct Solid
   std::optional<Capsule> capsule;
 };
 
+/** Bound of the error of integrals over a round solid by default, as a share of what it holds. */
+constexpr double DefaultSolidError = 2e-3;
+
 /** \name Solids
  * Points in mm, in the space of the model. They throw std::invalid_argument where a number is not finite, a radius is
  * not positive, a normal is zero, or a cylinder has no length.
