@@ -78,6 +78,7 @@ class Measure(TestCase):
         self.assertIn("nothing", missing["ball2.meanDensity"])
         self.assertAlmostEqual(measures["capsule1.volume"]["value"], math.pi * (25 * 20 + 4 / 3 * 125), delta=2)
         self.assertIn("no landmark", missing["femur"])
+        self.assertIn("no landmark", missing["hemipelvis"])
         self.assertEqual(measures["model.mass"]["unit"], "HU mm^3")
 
     def test_carried(self):

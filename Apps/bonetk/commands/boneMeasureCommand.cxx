@@ -199,7 +199,7 @@ AddMeasureCommand(CLI::App & app, Action & action)
     "--landmarks",
     options->landmarks,
     "Landmarks (.mrk.json): femoral_head, femoral_neck, shaft_proximal, shaft_distal, medial_condyle and "
-    "lateral_condyle for a femur's measures; see the guide");
+    "lateral_condyle for a femur's measures, acetabulum, asis and pubic_tubercle for a hemipelvis'; see the guide");
   command->add_option("--standard",
                       options->standard,
                       "Model of the same topology that the landmarks were placed on; they are carried to the model");

@@ -4,6 +4,7 @@
 #include "boneMeasureReport.h"
 
 #include "boneFemurMeasures.h"
+#include "boneHemipelvisMeasures.h"
 #include "boneJson.h"
 
 #include <algorithm>
@@ -80,7 +81,9 @@ MeasureBone(const TriangleSurface &       surface,
             const MeasureParameters &     parameters)
 {
   MeasureList list;
-  if (IsAmong(landmarks, FemurLandmarkNames()))
+  const bool  isFemur = IsAmong(landmarks, FemurLandmarkNames());
+  const bool  isHemipelvis = IsAmong(landmarks, HemipelvisLandmarkNames());
+  if (isFemur)
   {
     const FemurGeometry femur = FitFemur(surface, landmarks, parameters.landmarkReach);
     list.Append(MeasureFemur(femur));
@@ -93,9 +96,14 @@ MeasureBone(const TriangleSurface &       surface,
       list.missing.push_back({ "neckCorticalThickness", "a surface has no layers: measure a density model" });
     }
   }
-  else
+  if (isHemipelvis)
+  {
+    list.Append(MeasureHemipelvis(FitHemipelvis(surface, landmarks, parameters.landmarkReach)));
+  }
+  if (!isFemur && !isHemipelvis)
   {
     list.missing.push_back({ "femur", "no landmark of a femur was given, such as femoral_head" });
+    list.missing.push_back({ "hemipelvis", "no landmark of a hemipelvis was given, such as acetabulum" });
   }
   return list;
 }
