@@ -54,6 +54,8 @@ AddRegisterDeformCommand(CLI::App & group, Action & action);
 void
 AddMeasureCommand(CLI::App & app, Action & action);
 void
+AddPlanCommand(CLI::App & app, Action & action);
+void
 AddValidateCommand(CLI::App & app, Action & action);
 void
 AddInfoCommand(CLI::App & app, Action & action);

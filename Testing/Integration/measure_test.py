@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""`bonetk measure`: a phantom's known measures, solids, landmarks carried by topology, and what cannot be measured."""
+"""`bonetk measure` and `bonetk plan`: a phantom's known measures, solids, landmarks carried by topology, and what cannot be measured."""
 import math
 import os
 import tempfile
+import unittest
 
-from bonetk_testing import TestCase, bonetk, main, read_json, write_json
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
 
 # Of the mean femur phantom: head's centre and radius, and the pose of its landmarks.
 LEAN, TURN, NECK, RADIUS = math.radians(180 - 126), math.radians(12), 50.0, 23.5
@@ -97,6 +98,65 @@ class Measure(TestCase):
                     says="topology")
         self.refuse("measure", "moved.vtu", "--landmarks", "landmarks.json", "--standard", "m/model_L1.vtu", "-o", "x.json",
                     says="condyle' lies")
+
+    def test_plan(self):
+        """A resection of the head, and a screw up the neck beside one that leaves the bone."""
+        axis = [x / NECK for x in HEAD]
+        along = lambda t: [t * x for x in axis]
+        plane = [*along(NECK - 18), *axis]
+        self.succeed("plan", "m/model_L1.vtu", "--resection", *plane, "--path", *along(-60), *along(NECK + 8), "--path",
+                     *along(-60), *along(NECK + 40), "--radius", 3, "-o", "P.json")
+        report = read_json("P.json")
+        plan = {entry["name"]: entry for entry in report["measures"]}
+        missing = {entry["name"] for entry in report["missing"]}
+        self.succeed("measure", "m/model_L1.vtu", "--half-space", *plane, "-o", "M.json")
+        half = {entry["name"]: entry["value"] for entry in read_json("M.json")["measures"]}
+        self.assertEqual(plan["resection1.removed.mass"]["value"], half["halfSpace1.mass"])
+        self.assertAlmostEqual((plan["resection1.removed.volume"]["value"] + plan["resection1.kept.volume"]["value"]) /
+                               half["model.volume"], 1, delta=1e-9)
+        # Of the head's sphere, 18 mm from its centre, or of the neck that is a little wider.
+        self.assertGreater(plan["resection1.section.area"]["value"], math.pi * (RADIUS ** 2 - 18 ** 2))
+        self.assertLess(plan["resection1.section.area"]["value"], math.pi * 18 ** 2)
+        self.assertGreater(plan["resection1.section.largestSecondMoment"]["value"],
+                           plan["resection1.section.smallestSecondMoment"]["value"])
+        self.assertEqual(plan["path1.safe"]["value"], "yes")
+        self.assertIn("path1.breakthrough", missing)
+        self.assertTrue(8 < plan["path1.leastClearance"]["value"] < 13, "the neck's radius is 15 to 16 mm, the path's 3")
+        self.assertEqual(plan["path2.safe"]["value"], "no")
+        self.assertAlmostEqual(plan["path2.breakthrough"]["value"], 60 + NECK + RADIUS - 3, delta=1)
+        self.assertEqual(len(plan["path1.densityAlongPercentiles"]["value"]), 5)
+        for entry in report["measures"]:
+            self.assertTrue(entry["definition"], entry)
+
+        self.succeed("plan", "m/model_L1.vtu", "--path", *along(-60), *along(NECK + 8), "--radius", 3, "--search", "-o", "S.json")
+        found = {entry["name"]: entry["value"] for entry in read_json("S.json")["measures"]}
+        self.assertEqual((found["path1.search"], found["path1.safe"]), ("found", "yes"))
+        self.assertGreaterEqual(found["path1.densityAroundMean"], plan["path1.densityAroundMean"]["value"])
+        self.assertLess(math.dist(found["path1.from"], along(-60)), 5 * math.sqrt(2) + 1e-6)
+        _, err = self.succeed("plan", "m/model_L1.vtu", "--path", 90, 90, 0, 90, 90, 60, "--radius", 3, "--search", "--quiet", "-o",
+                              "N.json")
+        self.assertIn("no path", err)
+        self.assertEqual({entry["name"]: entry["value"] for entry in read_json("N.json")["measures"]}["path1.search"], "none")
+
+        self.refuse_usage("plan", "m/model_L1.vtu", "-o", "x.json", says="nothing to plan")
+        self.refuse_usage("plan", "m/model_L1.vtu", "--path", 0, 0, 0, 1, 1, 1, "-o", "x.json", says="--radius")
+        self.refuse_usage("plan", "m/model_L1.vtu", "--path", 1, 1, 1, 1, 1, 1, "--radius", 2, "-o", "x.json", says="one point")
+        self.refuse_usage("plan", "m/model_L1.vtu", "--resection", 0, 0, 0, 0, 0, 0, "-o", "x.json", says="normal")
+        self.refuse("plan", "m/model_L1.vtu", "--resection", 0, 0, 900, 0, 0, 1, "-o", "x.json", says="does not cut")
+        self.succeed("smooth", "m/model_L1.vtu", "--method", "laplacian", "--iterations", 1, "-o", "bare.vtu")
+        self.refuse("plan", "bare.vtu", "--path", 0, 0, 0, 1, 1, 1, "--radius", 2, "-o", "x.json", says="no density")
+
+    @unittest.skipUnless(EXAMPLES and os.path.exists(EXAMPLES + "/bonePlanExample"), "the examples are not built")
+    def test_examples(self):
+        code, out, err = run(EXAMPLES + "/bonePlanExample", "m/model_L1.vtu", "landmarks.json")
+        self.assertEqual(code, 0, err)
+        self.assertIn("least clearance", out)
+        near = {name: point for name, point in LANDMARKS.items() if "condyle" not in name}
+        write_json(near, "near.json")
+        code, out, err = run(EXAMPLES + "/boneMeasurementExample", "m/model_L1.vtu", "near.json", "m/model_L1.vtu")
+        self.assertEqual(code, 0, err)
+        self.assertIn("anteversion was not measured: landmark medial_condyle is missing", out)
+        self.assertIn("in the middle of the head", out)
 
     def test_refusals(self):
         self.refuse_usage("measure", "m/model_L1.vtu", "-o", "x.txt", says=".json")

@@ -2,17 +2,15 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneMeasureOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
 #include "boneAtomicFile.h"
 #include "boneFileName.h"
-#include "boneHierarchyIO.h"
 #include "boneLandmarkIO.h"
-#include "boneMeasureReport.h"
 #include "boneMeshIO.h"
 
-#include <cstdio>
 #include <sstream>
 
 namespace bone
@@ -36,13 +34,6 @@ IsSurface(const std::string & path)
   return HasExtension(path, ".ply") || HasExtension(path, ".stl") || HasExtension(path, ".vtp");
 }
 
-/** Of a hierarchy the first level. */
-MeshArrays
-ReadFirstLevel(const std::string & path)
-{
-  return HasExtension(path, ".vtu") ? ReadMeshArrays(path) : ReadHierarchy(path)->GetLevels().front().mesh->GetArrays();
-}
-
 std::string
 DescribePoint(const double * x)
 {
@@ -61,11 +52,7 @@ ReadSolids(const MeasureOptions & options)
                              const char *                name,
                              const char *                option,
                              const auto &                make) {
-    if (numbers.size() % each != 0)
-    {
-      throw UsageError(std::string(option) + " needs " + std::to_string(each) + " numbers a solid, but " +
-                       std::to_string(numbers.size()) + " were given");
-    }
+    RequireNumbersEach(option, numbers, each);
     for (std::size_t i = 0; i < numbers.size(); i += each)
     {
       NamedSolid named = make(numbers.data() + i);
@@ -124,28 +111,6 @@ ReadGivenLandmarks(const MeasureOptions & options, const MeshArrays & model)
   return options.standard.empty()
            ? landmarks
            : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model, options.parameters.landmarkReach);
-}
-
-void
-PrintMeasures(const MeasureReport & report, Session & session)
-{
-  std::ostringstream text;
-  for (const Measure & measure : report.list.measures)
-  {
-    text << measure.name << ':' << (measure.text.empty() ? "" : " ") << measure.text;
-    for (const double value : measure.value)
-    {
-      char number[40];
-      std::snprintf(number, sizeof(number), " %.6g", value);
-      text << number;
-    }
-    text << (measure.unit.empty() ? "" : " ") << measure.unit << '\n';
-  }
-  for (const MissingMeasure & missing : report.list.missing)
-  {
-    text << missing.name << ": not measured: " << missing.reason << '\n';
-  }
-  session.Print(text.str());
 }
 
 void

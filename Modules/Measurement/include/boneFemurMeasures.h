@@ -65,8 +65,8 @@ FemurLandmarkNames();
  * | `shaft_distal` | the same, where the part whose axis is taken ends: at mid-shaft |
  * | `medial_condyle`, `lateral_condyle` | near the hindmost point of each condyle, within 20 mm |
  *
- * - Head: the sphere of the half of the head that looks away from the neck, by the middles of its triangles' edges, weighted
- *   with areas, robust (a fovea does not count).
+ * - Head: the sphere of the half of the head that looks away from the neck, by the middles of its triangles' edges,
+ * weighted with areas, robust (a fovea does not count).
  * - Shaft: the line of the centroids of 21 cross-sections at right angles to it, between the heights of the two
  * landmarks.
  * - Neck: the line from the centre of the head through the centroids of the narrowest cross-sections at right angles to

@@ -19,12 +19,15 @@ struct PathAssessment
   std::vector<double> along;            ///< density at points in the path that lie in bone, ascending, density units
   std::vector<double> around;           ///< the same in the shell around it
   double              boneShare{ 0.0 }; ///< of the path's points, that lie in bone
-  double entry{ 0.0 };          ///< mm along the axis from `from` to where the margin is reached first; NaN: nowhere
-  double leastClearance{ 0.0 }; ///< mm between the path and the surface beyond the entry, its tip included; negative:
-                                ///< the path breaks through. NaN where there is no entry
-  double breakthrough{
-    0.0
-  }; ///< mm along the axis from `from` to where the path leaves the bone beyond its entry, NaN: nowhere
+
+  /** mm along the axis from `from` to where the margin is reached first. NaN: nowhere. */
+  double entry{ 0.0 };
+  /** mm between the path and the surface, the least of what its tip has and of places beyond the entry where it has
+   * come nearer to the surface again, by 0.5 mm or to within the margin; negative: it breaks through. NaN where there
+   * is no entry. */
+  double leastClearance{ 0.0 };
+  /** mm along the axis from `from` to where the path touches the surface beyond its entry. NaN: nowhere. */
+  double breakthrough{ 0.0 };
 
   /** Whether the path has an entry and leaves at least the margin beyond. */
   bool
@@ -74,6 +77,8 @@ public:
          const Execution &          execution = {}) const;
 
 private:
+  void
+  AssessClearance(const Capsule & path, double margin, PathAssessment & found) const;
   double
   DensityIn(const Vector3 & x, IdType & hint) const;
 

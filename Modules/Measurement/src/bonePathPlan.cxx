@@ -19,6 +19,7 @@ namespace
 {
 constexpr double AxialStep = 1.0;      // mm, between points of the density
 constexpr double ClearanceStep = 0.25; // mm
+constexpr double ClearanceFall = 0.5;  // mm, by which a path comes nearer to the surface again
 constexpr int    PathRings = 3;
 constexpr int    AroundPath = 8;
 constexpr int    ShellRings = 2;
@@ -141,28 +142,46 @@ PathPlanner::Assess(const Capsule & path, double margin, double shell) const
   std::sort(found.along.begin(), found.along.end());
   std::sort(found.around.begin(), found.around.end());
   found.boneShare = static_cast<double>(found.along.size()) / static_cast<double>(inPath);
-  // Clearance.
+  this->AssessClearance(path, margin, found);
+  return found;
+}
+
+void
+PathPlanner::AssessClearance(const Capsule & path, double margin, PathAssessment & found) const
+{
   found.entry = found.leastClearance = found.breakthrough = NoPlace;
-  const int steps = static_cast<int>(std::ceil(length / ClearanceStep));
+  const double length = (path.to - path.from).norm();
+  const int    steps = static_cast<int>(std::ceil(length / ClearanceStep));
+  double       largest = 0.0, least = 0.0, clearance = 0.0;
   for (int i = 0; i <= steps; ++i)
   {
-    const double at = length * i / steps;
-    const double clearance = -m_Surface.FindNearest(path.from + at * axis).distance - path.radius;
+    const double share = static_cast<double>(i) / steps;
+    clearance = -m_Surface.FindNearest(path.from + share * (path.to - path.from)).distance - path.radius;
     if (std::isnan(found.entry) && clearance >= margin)
     {
-      found.entry = at;
-      found.leastClearance = clearance;
+      found.entry = share * length;
+      found.leastClearance = std::numeric_limits<double>::infinity();
+      largest = least = clearance;
     }
     if (!std::isnan(found.entry))
     {
-      found.leastClearance = std::min(found.leastClearance, clearance);
+      least = std::min(least, clearance);
+      largest = std::max(largest, clearance);
+      if (clearance < largest - ClearanceFall)
+      {
+        found.leastClearance = std::min(found.leastClearance, clearance);
+      }
       if (std::isnan(found.breakthrough) && clearance < 0.0)
       {
-        found.breakthrough = at;
+        found.breakthrough = share * length;
       }
     }
   }
-  return found;
+  if (!std::isnan(found.entry))
+  {
+    // Within the margin no place is passed over.
+    found.leastClearance = least < margin ? least : std::min(found.leastClearance, clearance);
+  }
 }
 
 bool
@@ -291,11 +310,12 @@ PlanPath(const MeshArrays &         mesh,
       { assessed.entry },
       "mm",
       "Along the axis, from its begin to where the path first leaves the margin to the surface");
-  add(
-    "leastClearance",
-    { assessed.leastClearance },
-    "mm",
-    "Least distance of the path to the bone's surface beyond the entry, its tip included; negative: it breaks through");
+  add("leastClearance",
+      { assessed.leastClearance },
+      "mm",
+      "Least distance of the path to the bone's surface at its tip and where it comes nearer to the surface again "
+      "beyond its "
+      "entry; negative: it breaks through");
   add("breakthrough",
       { assessed.breakthrough },
       "mm",

@@ -44,8 +44,8 @@ TEST(PathPlan, ClearanceAndBreakthroughAreThoseOfTheBlock)
   const PathPlanner planner(Block());
   // Enters through the upper face and ends 10 mm above the lower one.
   const auto inside = planner.Assess({ Vector3(0, 0, 35), Vector3(0, 0, -20), 3.0 }, 2.0, 2.0);
-  EXPECT_NEAR(inside.entry, 10.0, 0.3); // 5 mm to the face, and 3 + 2 below it
-  EXPECT_NEAR(inside.leastClearance, 2.0, 0.3);
+  EXPECT_NEAR(inside.entry, 10.0, 0.3);          // 5 mm to the face, and 3 + 2 below it
+  EXPECT_NEAR(inside.leastClearance, 7.0, 1e-9); // of the tip
   EXPECT_TRUE(std::isnan(inside.breakthrough));
   EXPECT_TRUE(inside.IsSafe(2.0));
   EXPECT_NEAR(inside.boneShare, 50.0 / 55.0, 1e-9);
@@ -85,14 +85,14 @@ TEST(PathPlan, DensitiesOfALinearFieldAreThoseOfTheAxis)
 TEST(PathPlan, ASearchFindsTheBundleAndStaysWithinItsBounds)
 {
   const PathPlanner  planner(Block());
-  const Capsule      start{ Vector3(2, 0, 32), Vector3(2, 0, -12), 3.0 };
+  const Capsule      start{ Vector3(2, 0, 32), Vector3(2, 0, 8), 3.0 };
   PathPlanParameters parameters;
   Capsule            best;
   ASSERT_TRUE(planner.Search(start, parameters, best));
   EXPECT_NEAR(best.from.x(), 6.0, 0.7);
   EXPECT_NEAR(best.from.y(), -4.0, 0.7);
   EXPECT_NEAR((best.to - best.from).head<2>().norm(), 0.0, 1.5);
-  EXPECT_LE(std::abs((best.to - best.from).norm() - 44.0), parameters.searchDepth + 1e-9);
+  EXPECT_LE(std::abs((best.to - best.from).norm() - 24.0), parameters.searchDepth + 1e-9);
   EXPECT_TRUE(planner.Assess(best, parameters.margin, parameters.shell).IsSafe(parameters.margin));
   EXPECT_GT(planner.Assess(best, 2.0, 2.0).MeanAround(), planner.Assess(start, 2.0, 2.0).MeanAround());
   parameters.searchShift = 1.0;
@@ -111,7 +111,7 @@ TEST(PathPlan, ASearchKeepsTheMarginWhereTheDensestBoneIsAtTheSurface)
   parameters.searchAngle = 0.0;
   parameters.searchShift = 8.0;
   Capsule best;
-  ASSERT_TRUE(planner.Search({ Vector3(9, 0, 32), Vector3(9, 0, -12), 3.0 }, parameters, best));
+  ASSERT_TRUE(planner.Search({ Vector3(9, 0, 32), Vector3(9, 0, 8), 3.0 }, parameters, best));
   EXPECT_LE(best.from.x(), 15.0 + 1e-9); // radius 3 and margin 2 from the face at 20
   EXPECT_GE(best.from.x(), 14.5);
   Capsule none;
@@ -122,7 +122,7 @@ TEST(PathPlan, ASearchKeepsTheMarginWhereTheDensestBoneIsAtTheSurface)
 TEST(PathPlan, DoesNotDependOnTheNumberOfThreads)
 {
   const PathPlanner planner(Block());
-  const Capsule     start{ Vector3(2, 0, 32), Vector3(2, 0, -12), 3.0 };
+  const Capsule     start{ Vector3(2, 0, 32), Vector3(2, 0, 8), 3.0 };
   const auto        before = itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads();
   Capsule           one, four;
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
@@ -137,7 +137,7 @@ TEST(PathPlan, DoesNotDependOnTheNumberOfThreads)
 TEST(PathPlan, MeasuresSayWhatWasFound)
 {
   const auto list =
-    PlanPath(Block(), { Vector3(0, 0, 35), Vector3(0, 0, -20), 3.0 }, true, PathPlanParameters(), "screw");
+    PlanPath(Block(), { Vector3(0, 0, 35), Vector3(0, 0, 5), 3.0 }, true, PathPlanParameters(), "screw");
   const auto find = [&list](const std::string & name) {
     const auto at =
       std::find_if(list.measures.begin(), list.measures.end(), [&](const Measure & m) { return m.name == name; });
@@ -146,7 +146,7 @@ TEST(PathPlan, MeasuresSayWhatWasFound)
   EXPECT_EQ(find("screw.search").text, "found");
   EXPECT_EQ(find("screw.safe").text, "yes");
   EXPECT_EQ(find("screw.densityAlongPercentiles").value.size(), 5u);
-  EXPECT_GT(find("screw.volume").value.at(0), 1000.0);
+  EXPECT_GT(find("screw.volume").value.at(0), 400.0);
   const auto lacks = [&list](const std::string & name) {
     return std::any_of(
       list.missing.begin(), list.missing.end(), [&](const MissingMeasure & missing) { return missing.name == name; });
