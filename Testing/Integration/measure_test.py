@@ -85,14 +85,16 @@ class Measure(TestCase):
     def test_carried(self):
         """Landmarks of a standard on a subject of one topology: here one that smoothing moved."""
         self.succeed("smooth", "m/model_L1.vtu", "--method", "laplacian", "--iterations", 1, "-o", "moved.vtu")
-        measures, missing, landmarks = self.measure("moved.vtu", "--landmarks", "landmarks.json", "--standard", "m/model_L1.vtu",
-                                                    "--landmark-reach", 400, "--write-landmarks", "carried.mrk.json")
+        near = {name: point for name, point in LANDMARKS.items() if "condyle" not in name}
+        write_json(near, "near.json")
+        measures, missing, landmarks = self.measure("moved.vtu", "--landmarks", "near.json", "--standard", "m/model_L1.vtu",
+                                                    "--write-landmarks", "carried.mrk.json")
         self.assertGreater(landmarks[0]["cell"], 0)
         self.assertAlmostEqual(landmarks[0]["distance"], 0, delta=1e-9)
         # Laplacian smoothing shrinks: it is the subject that is measured.
         self.assertAlmostEqual(measures["headRadius"]["value"], RADIUS - 2, delta=1)
         written = read_json("carried.mrk.json")["markups"][0]["controlPoints"]
-        self.assertEqual([point["label"] for point in written], sorted(LANDMARKS))
+        self.assertEqual([point["label"] for point in written], sorted(near))
         self.assertIn("the model holds no density", missing["model.mass"])
         self.refuse("measure", "moved.vtu", "--landmarks", "landmarks.json", "--standard", "m/model_L2.vtu", "-o", "x.json",
                     says="topology")

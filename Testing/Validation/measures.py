@@ -194,6 +194,25 @@ def phantoms(folder):
     return rows, list(phantom.known)
 
 
+def own_phantoms(folder):
+    """Errors on models of the phantoms that `bonetk phantom` makes: of the head's sphere, and of the acetabulum."""
+    lean, turn = math.radians(180 - 126), math.radians(12)
+    head = 50 * numpy.array([math.sin(lean) * math.cos(turn), -math.sin(lean) * math.sin(turn), math.cos(lean)])
+    cases = {"femur": ({"femoral_head": head + (3, -2, 2), "femoral_neck": 0.4 * head}, head, "headCentre", {"headRadius": 23.5}),
+             # The landmarks lie at one y, so that the anterior pelvic plane is that of the phantom's angles.
+             "hemipelvis": ({"acetabulum": (3, -2, 2), "asis": (-24, -40, 66), "pubic_tubercle": (74, -40, -33)}, numpy.zeros(3),
+                            "acetabularCentre", {"acetabularRadius": 26, "radiographicInclination": 45, "radiographicAnteversion": 18})}
+    rows = ""
+    for bone, (seeds, centre, name, known) in cases.items():
+        ct, labels = folder / f"{bone}.mha", folder / f"{bone}_l.nii.gz"
+        run(BONETK, "phantom", "--bone", bone, "-o", ct, "--labels", labels, "--quiet")
+        run(BONETK, "build", ct, "--labels", labels, "--degree", 2, "--quiet", "-o", folder / bone)
+        found, _ = measure(folder, folder / bone / "model_L1.vtu", "--landmarks", write_json(seeds, folder / "b.json"))
+        rows += f"| {bone} | {name} | {numpy.linalg.norm(numpy.array(found[name]['value']) - centre):.2f} |\n"
+        rows += "".join(f"| {bone} | {what} | {found[what]['value'] - value:+.2f} |\n" for what, value in known.items())
+    return rows
+
+
 def read_model(path):
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
@@ -283,6 +302,8 @@ def main():
         print(worst, round_solids, flush=True)
         known, columns = phantoms(folder)
         print(known, flush=True)
+        built = own_phantoms(folder)
+        print(built, flush=True)
     text = f"""# Landmarks and measures
 
 Made by `Testing/Validation/measures.py` at {commit}.
@@ -317,6 +338,12 @@ a model of 20,000 tetrahedra that `bonetk build` makes of its CT of 1 mm. Errors
 | phantom | {' | '.join(columns)} | headCentre |
 |---|{'---|' * (len(columns) + 1)}
 {known}
+Models of the mean femur and hemipelvis that `bonetk phantom` makes, by `bonetk build` as it is: errors, mm and degrees. What these know of
+their measures is the head's sphere, and the acetabulum's sphere and angles.
+
+| phantom | measure | error |
+|---|---|---|
+{built}
 ## Integrals over solids
 
 Of one femur's model, degree 2. The two sides of 20 planes add up to the whole, volumes and masses of regions and of all, to {worst:.0e} of

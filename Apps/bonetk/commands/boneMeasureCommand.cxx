@@ -110,7 +110,7 @@ ReadGivenLandmarks(const MeasureOptions & options, const MeshArrays & model)
   const auto landmarks = ReadLandmarks(options.landmarks);
   return options.standard.empty()
            ? landmarks
-           : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model, options.parameters.landmarkReach);
+           : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model);
 }
 
 void

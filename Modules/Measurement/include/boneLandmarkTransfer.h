@@ -39,13 +39,17 @@ RequireSameTopology(const MeshArrays & standard, const MeshArrays & subject);
 
 /** \brief Landmarks of a standard model on a subject of the same topology.
  *
+ * One inside, or within 2 mm of the surface, keeps its tetrahedron and barycentric coordinates (of the nearest place).
+ * One further out, as the centre of an acetabulum is, goes with the standard's points around it, up to twice as far as
+ * the surface: by the similarity that fits their motion best (S. Umeyama, doi:10.1109/34.88573).
+ *
  * Throws std::invalid_argument as RequireSameTopology and LocateLandmarks, and where a landmark lies further than
  * `farthest` (mm) from the standard model, as one of another space does. */
 std::vector<Landmark>
 CarryLandmarks(const MeshArrays &            standard,
                const std::vector<Landmark> & landmarks,
                const MeshArrays &            subject,
-               double                        farthest = 20.0);
+               double                        farthest = 45.0);
 } // namespace bone
 
 #endif

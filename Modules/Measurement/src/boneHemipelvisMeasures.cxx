@@ -53,7 +53,7 @@ FacingPoints(const SurfaceSeeds & bone, const Vector3 & place, double reach)
 FittedSphere
 FitAcetabulum(const SurfaceSeeds & bone, Vector3 & inward)
 {
-  const Vector3 seed = bone.Find("acetabulum");
+  const Vector3 seed = bone.Find("acetabulum", CupReach);
   FittedSphere  cup{ seed, 0.0, 0.0 };
   {
     std::vector<double> distances;

@@ -3,6 +3,10 @@
  *=========================================================================*/
 #include "boneLandmarkTransfer.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -17,6 +21,37 @@ RefuseTransfer(const TParts &... parts)
   std::ostringstream text;
   (text << ... << parts);
   throw std::invalid_argument(text.str());
+}
+
+constexpr double      OnSurface = 2.0;  // mm: a landmark so near to the surface is one on it
+constexpr double      Around = 2.0;     // of its distance: how far points around a landmark in the open reach
+constexpr std::size_t LeastAround = 12; // of them
+
+/** Where a landmark outside the standard goes with the points of the surface around it: by the similarity that fits
+ * their motion best. */
+Vector3
+CarryOutside(const MeshArrays & standard, const Landmark & landmark, double distance, const MeshArrays & subject)
+{
+  std::vector<std::size_t> ids;
+  for (double reach = Around * distance; ids.size() < std::min(LeastAround, standard.points.size()); reach *= 1.5)
+  {
+    ids.clear();
+    for (std::size_t i = 0; i < standard.points.size(); ++i)
+    {
+      if ((standard.points[i] - landmark.point).norm() < reach)
+      {
+        ids.push_back(i);
+      }
+    }
+  }
+  Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(ids.size())), to = from;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+  {
+    from.col(static_cast<Eigen::Index>(i)) = standard.points[ids[i]];
+    to.col(static_cast<Eigen::Index>(i)) = subject.points[ids[i]];
+  }
+  const Eigen::Matrix4d map = Eigen::umeyama(from, to, true);
+  return map.topLeftCorner<3, 3>() * landmark.point + map.topRightCorner<3, 1>();
 }
 } // namespace
 
@@ -104,6 +139,14 @@ CarryLandmarks(const MeshArrays &            standard,
                      " mm are the most: place it on that model.");
     }
   }
-  return PlaceLandmarks(subject, places);
+  auto carried = PlaceLandmarks(subject, places);
+  for (std::size_t i = 0; i < carried.size(); ++i)
+  {
+    if (places[i].place.distance > OnSurface)
+    {
+      carried[i].point = CarryOutside(standard, landmarks[i], places[i].place.distance, subject);
+    }
+  }
+  return carried;
 }
 } // namespace bone

@@ -29,14 +29,14 @@ SurfaceSeeds::SurfaceSeeds(const TriangleSurface & closed, const std::vector<Lan
 }
 
 const Vector3 &
-SurfaceSeeds::Find(const std::string & name) const
+SurfaceSeeds::Find(const std::string & name, double beyond) const
 {
   const auto found = m_Seeds.find(name);
   if (found == m_Seeds.end())
   {
     throw MissingSeed("landmark " + name + " is missing");
   }
-  if (!(found->second.distance <= m_Farthest))
+  if (!(found->second.distance <= m_Farthest + beyond))
   {
     std::ostringstream text;
     text << "landmark " << name << " lies " << found->second.distance

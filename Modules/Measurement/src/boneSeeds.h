@@ -27,10 +27,10 @@ struct SurfaceSeeds
   /** The surface must outlive this. Of landmarks of one name the first counts. */
   SurfaceSeeds(const TriangleSurface & closed, const std::vector<Landmark> & landmarks, double farthest);
 
-  /** Throws MissingSeed where the landmark was not given, or lies beyond the surface and further than `farthest` (mm)
-   * from it. */
+  /** Throws MissingSeed where the landmark was not given, or lies beyond the surface and further from it than
+   * `farthest` and `beyond` (mm), how far in the open it should lie. */
   const Vector3 &
-  Find(const std::string & name) const;
+  Find(const std::string & name, double beyond = 0.0) const;
 
   const TriangleSurface & surface;
   /** The middles of each triangle's edges, with a third of its area each (mm^2): sums over them are exact integrals of

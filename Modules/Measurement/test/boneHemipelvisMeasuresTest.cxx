@@ -70,7 +70,7 @@ TEST(HemipelvisMeasures, ThePhantomsAcetabulumIsFound)
   {
     const HemipelvisPhantom      phantom(seed);
     const HemipelvisParameters & p = phantom.GetParameters();
-    const auto                   hemipelvis = FitHemipelvis(PhantomSurface(phantom, 3.1), PhantomLandmarks(), 60.0);
+    const auto                   hemipelvis = FitHemipelvis(PhantomSurface(phantom, 3.1), PhantomLandmarks());
     const auto                   list = MeasureHemipelvis(hemipelvis);
     EXPECT_TRUE(list.missing.empty());
     EXPECT_NEAR(ValueOf(list, "acetabularRadius"), p.cupRadius, 0.2);
@@ -97,7 +97,7 @@ TEST(HemipelvisMeasures, MoveWithTheBoneWhereLandmarksGiveTheTransverseAxis)
   auto            landmarks = PhantomLandmarks();
   landmarks.push_back({ "asis_right", Vector3(-12, -40, 35) });
   landmarks.push_back({ "asis_left", Vector3(230, -40, 35) });
-  const auto still = MeasureHemipelvis(FitHemipelvis(surface, landmarks, 60.0));
+  const auto still = MeasureHemipelvis(FitHemipelvis(surface, landmarks));
   const auto turn = Eigen::AngleAxisd(2.0, Vector3(-1, 2, 0.3).normalized());
   for (Vector3 & p : surface.points)
   {
@@ -107,7 +107,7 @@ TEST(HemipelvisMeasures, MoveWithTheBoneWhereLandmarksGiveTheTransverseAxis)
   {
     landmark.point = turn * landmark.point + Vector3(10, 20, 30);
   }
-  const auto moved = MeasureHemipelvis(FitHemipelvis(surface, landmarks, 60.0));
+  const auto moved = MeasureHemipelvis(FitHemipelvis(surface, landmarks));
   for (const char * name :
        { "acetabularRadius", "radiographicInclination", "radiographicAnteversion", "anatomicAnteversion" })
   {
@@ -121,7 +121,7 @@ TEST(HemipelvisMeasures, AMirroredBoneIsALeftOneWithTheSameAngles)
 {
   TriangleSurface surface = PhantomSurface(HemipelvisPhantom(), 3.1);
   auto            landmarks = PhantomLandmarks();
-  const auto      right = MeasureHemipelvis(FitHemipelvis(surface, landmarks, 60.0));
+  const auto      right = MeasureHemipelvis(FitHemipelvis(surface, landmarks));
   for (Vector3 & p : surface.points)
   {
     p.x() = -p.x();
@@ -134,7 +134,7 @@ TEST(HemipelvisMeasures, AMirroredBoneIsALeftOneWithTheSameAngles)
   {
     landmark.point.x() = -landmark.point.x();
   }
-  const auto left = MeasureHemipelvis(FitHemipelvis(surface, landmarks, 60.0));
+  const auto left = MeasureHemipelvis(FitHemipelvis(surface, landmarks));
   EXPECT_EQ(SideOf(left), "left");
   EXPECT_NEAR(ValueOf(left, "radiographicInclination"), ValueOf(right, "radiographicInclination"), 0.5);
   EXPECT_NEAR(ValueOf(left, "radiographicAnteversion"), ValueOf(right, "radiographicAnteversion"), 0.5);
@@ -145,11 +145,11 @@ TEST(HemipelvisMeasures, WhatIsMissingIsSaid)
   const auto surface = PhantomSurface(HemipelvisPhantom(), 3.1);
   auto       landmarks = PhantomLandmarks();
   landmarks.pop_back();
-  const auto list = MeasureHemipelvis(FitHemipelvis(surface, landmarks, 60.0));
+  const auto list = MeasureHemipelvis(FitHemipelvis(surface, landmarks));
   EXPECT_GT(ValueOf(list, "acetabularRadius"), 20.0);
   ASSERT_EQ(list.missing.size(), 5u);
   EXPECT_EQ(list.missing[0].reason, "landmark pubic_tubercle is missing");
   EXPECT_EQ(MeasureHemipelvis(FitHemipelvis(surface, {})).missing.size(), 7u);
-  EXPECT_EQ(FitHemipelvis(surface, { { "acetabulum", Vector3(40, 30, 30) } }, 60.0).rim.has_value(), false);
+  EXPECT_EQ(FitHemipelvis(surface, { { "acetabulum", Vector3(40, 30, 30) } }).rim.has_value(), false);
 }
 } // namespace

@@ -24,7 +24,7 @@ Places()
 TEST(LandmarkTransfer, OntoTheStandardItselfIsTheNearestPointOfTheModel)
 {
   const MeshArrays mesh = test::MakeTube({});
-  const auto       found = CarryLandmarks(mesh, Places(), mesh);
+  const auto       found = PlaceLandmarks(mesh, LocateLandmarks(mesh, Places()));
   ASSERT_EQ(found.size(), 3u);
   EXPECT_NEAR((found[0].point - Places()[0].point).norm(), 0.0, 1e-12);
   EXPECT_NEAR((found[2].point - Vector3(1.0, -2.0, 0.0)).norm(), 0.0, 1e-12); // the end is flat at z = 0
@@ -35,7 +35,7 @@ TEST(LandmarkTransfer, OntoTheStandardItselfIsTheNearestPointOfTheModel)
   EXPECT_EQ(found[1].name, "beside");
 }
 
-TEST(LandmarkTransfer, MovesAsTheMeshIsMovedByAnAffineMap)
+TEST(LandmarkTransfer, WithinTheMeshMovesByAnAffineMapOfIt)
 {
   const MeshArrays standard = test::MakeTube({});
   MeshArrays       subject = standard;
@@ -46,12 +46,34 @@ TEST(LandmarkTransfer, MovesAsTheMeshIsMovedByAnAffineMap)
   {
     p = map * p + shift;
   }
-  const auto on = CarryLandmarks(standard, Places(), standard);
-  const auto carried = CarryLandmarks(standard, Places(), subject);
-  for (std::size_t i = 0; i < on.size(); ++i)
+  // Inside, and half a millimetre beyond the flat end, which is as good as on it.
+  const auto carried = CarryLandmarks(standard, { Places()[0], { "end", Vector3(1.0, -2.0, -0.5) } }, subject);
+  EXPECT_NEAR((carried[0].point - (map * Places()[0].point + shift)).norm(), 0.0, 1e-11);
+  EXPECT_NEAR((carried[1].point - (map * Vector3(1.0, -2.0, 0.0) + shift)).norm(), 0.0, 1e-11);
+}
+
+TEST(LandmarkTransfer, OutsideTheMeshMovesByASimilarityOfIt)
+{
+  const MeshArrays standard = test::MakeTube({});
+  MeshArrays       subject = standard;
+  const auto       turn = Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized());
+  const auto       moved = [&turn](const Vector3 & x) { return Vector3(1.15 * (turn * x) + Vector3(5, -70, 3)); };
+  for (Vector3 & p : subject.points)
   {
-    EXPECT_NEAR((carried[i].point - (map * on[i].point + shift)).norm(), 0.0, 1e-11);
+    p = moved(p);
   }
+  const auto carried = CarryLandmarks(standard, Places(), subject);
+  for (std::size_t i = 0; i < carried.size(); ++i)
+  {
+    EXPECT_NEAR((carried[i].point - moved(Places()[i].point)).norm(), 0.0, 1e-9) << carried[i].name;
+  }
+  // A motion of what is far from the landmark does not reach it.
+  subject = standard;
+  for (Vector3 & p : subject.points)
+  {
+    p.z() += p.z() > 14.0 ? 10.0 : 0.0;
+  }
+  EXPECT_NEAR((CarryLandmarks(standard, { Places()[2] }, subject)[0].point - Places()[2].point).norm(), 0.0, 1e-9);
 }
 
 TEST(LandmarkTransfer, RefusesAnotherTopologyAndALandmarkOfAnotherSpace)
