@@ -38,7 +38,8 @@ TESTS = {"Core": ["Core", "Tiling", "Quality", "Density", "Simplification", "Fil
          "Radiograph": ["Radiograph", "Filter", "Integration"],
          "Atlas": ["Atlas", "Filter"],
          "Phantom": ["Phantom", "Filter", "Integration"],
-         "Evaluation": ["Evaluation", "Integration"]}
+         "Evaluation": ["Evaluation", "Integration"],
+         "Measurement": ["Measurement"]}
 
 # A fault may ask for memory without end.
 MEMORY = 8 << 30
