@@ -4,6 +4,7 @@
 #ifndef boneAtlasRegistration_h
 #define boneAtlasRegistration_h
 
+#include "boneReflection.h"
 #include "boneTriangleSurface.h"
 #include "boneUntangling.h"
 
@@ -38,10 +39,6 @@ struct SubjectSurfaces
 /** All surfaces of a layered mesh. */
 SubjectSurfaces
 SurfacesOf(const MeshArrays & mesh);
-
-/** x -> -x in the first coordinate. */
-std::vector<Vector3>
-ReflectPoints(std::vector<Vector3> points);
 
 /** \class StandardModel
  * \brief A tetrahedral mesh that is carried to subjects (paper 6.1); what depends on it alone is computed once.

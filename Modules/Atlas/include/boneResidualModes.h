@@ -21,8 +21,9 @@ LeaveOneOutResiduals(const PrincipalModes & modes, const Eigen::MatrixXd & score
  * are aligned. Their variances, alike for each three of one shape, are the most likely ones of what the atlas' own
  * subjects, each less its projection on the modes of the others, have of them (leave-one-out, expectation
  * maximisation): the others take a part of each smooth mode, and what they take says nothing of its variance. The total
- * variance is of all that is left, in these modes or not. Throws std::invalid_argument where the atlas has the
- * scores of fewer than four subjects, and what SmoothModes throws. */
+ * variance is of all that is left, in these modes or not, with that of the modes which the atlas left out; these raise
+ * the variances in proportion. Throws std::invalid_argument where the atlas has the scores of fewer than four subjects,
+ * and what SmoothModes throws. */
 PrincipalModes
 ResidualModes(const StatisticalModelContent & atlas, double length, int modes);
 } // namespace bone

@@ -72,16 +72,6 @@ MeanDistance(const std::vector<Vector3> & points, const DirectedSurface & surfac
 }
 } // namespace
 
-std::vector<Vector3>
-ReflectPoints(std::vector<Vector3> points)
-{
-  for (Vector3 & x : points)
-  {
-    x[0] = -x[0];
-  }
-  return points;
-}
-
 SubjectSurfaces
 SurfacesOf(const MeshArrays & mesh)
 {

@@ -94,15 +94,18 @@ EstimateVariances(const Eigen::MatrixXd & smooth, const Eigen::MatrixXd & ofAtla
   for (int i = 0; i < iterations && rest > 0.0; ++i)
   {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
+    Eigen::MatrixXd precision = beside / rest;
+    precision.diagonal() += variances.cwiseInverse();
+    const Eigen::MatrixXd common = precision.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
     for (Eigen::Index s = 0; s < left.cols(); ++s)
     {
-      // Of the atlas' modes, this subject's rest alone is none of the others'.
-      const Eigen::VectorXd own = overlap * left.col(s).normalized();
-      Eigen::MatrixXd       precision = (beside + own * own.transpose()) / rest;
-      precision.diagonal() += variances.cwiseInverse();
-      const Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-      const Eigen::VectorXd mean = covariance * along.col(s) / rest;
-      squares += (mean.cwiseAbs2() + covariance.diagonal()) / subjects;
+      // Of the atlas' modes, this subject's rest alone is none of the others': one more column (Sherman-Morrison).
+      const Eigen::VectorXd own = overlap * left.col(s).normalized() / std::sqrt(rest);
+      const Eigen::VectorXd spread = common * own;
+      const double          scale = 1.0 / (1.0 + own.dot(spread));
+      const Eigen::VectorXd right = along.col(s) / rest;
+      const Eigen::VectorXd mean = common * right - scale * spread.dot(right) * spread;
+      squares += (mean.cwiseAbs2() + common.diagonal() - scale * spread.cwiseAbs2()) / subjects;
     }
     variances = share(squares);
   }
@@ -136,8 +139,14 @@ ResidualModes(const StatisticalModelContent & atlas, double length, int modes)
   PrincipalModes        result = SmoothModes(atlas.mean.points, 1.0, length, modes);
   result.modes = WithoutRigidMotions(atlas.mean.points, result.modes);
   result.variances = EstimateVariances(result.modes, atlas.shape.modes, left);
-  result.totalVariance = left.squaredNorm() / static_cast<double>(subjects) +
-                         std::max(0.0, atlas.shape.totalVariance - atlas.shape.variances.sum());
+  // Modes that the atlas left out for their small variance are what it leaves of a subject, too.
+  const double ofOthers = left.squaredNorm() / static_cast<double>(subjects);
+  const double dropped = std::max(0.0, atlas.shape.totalVariance - atlas.shape.variances.sum());
+  result.totalVariance = ofOthers + dropped;
+  if (ofOthers > 0.0)
+  {
+    result.variances *= result.totalVariance / ofOthers;
+  }
   return result;
 }
 } // namespace bone
