@@ -51,6 +51,11 @@ AddRegisterCommand(CLI::App & app, Action & action);
 /** To the group `register`. */
 void
 AddRegisterDeformCommand(CLI::App & group, Action & action);
+/** To the group `register`. */
+void
+AddRegisterVolumeCommand(CLI::App & group, Action & action);
+void
+AddLabelCommand(CLI::App & app, Action & action);
 void
 AddMeasureCommand(CLI::App & app, Action & action);
 void

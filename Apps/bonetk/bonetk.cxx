@@ -193,6 +193,7 @@ main(int argc, char ** argv)
   bone::AddTrainCommand(app, action);
   bone::AddSampleCommand(app, action);
   bone::AddRegisterCommand(app, action);
+  bone::AddLabelCommand(app, action);
   bone::AddMeasureCommand(app, action);
   bone::AddPlanCommand(app, action);
   bone::AddValidateCommand(app, action);

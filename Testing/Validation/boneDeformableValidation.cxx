@@ -5,32 +5,26 @@
 // REGISTERED/NAME.vtu, simulates X-rays of CTS/NAME.mha, and finds shape and density from starts that are off. Prints a
 // JSON line a subject: distances to the surface SHAPES/NAME.ply (mm) of the mean, of the best projection on the
 // atlas' modes, and of what was found; how many of the 95 % intervals hold the truth; seconds.
+#include "boneLeaveOneOut.h"
 #include "boneXRaySimulation.h"
 
 #include "boneBernstein.h"
 #include "boneDeformableRegistration.h"
-#include "boneMeshIO.h"
 #include "bonePointAlignment.h"
-#include "boneStatisticalModelEstimator.h"
-#include "boneTriangleTree.h"
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <itkConstantPadImageFilter.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <filesystem>
 #include <iostream>
 #include <numeric>
 
 namespace
 {
 using namespace bone;
-using Mesh = DensityMesh<double>;
-namespace fs = std::filesystem;
 
 struct Trials
 {
@@ -48,27 +42,6 @@ struct Trials
   DeformableRadiographParameters parameters;
 };
 
-StatisticalModelContent
-Train(const std::vector<std::pair<std::string, MeshArrays>> & subjects, const std::string & without)
-{
-  auto set = MeshTrainingSet<>::New();
-  for (const auto & [name, arrays] : subjects)
-  {
-    if (name != without)
-    {
-      auto mesh = Mesh::New();
-      mesh->SetArrays(arrays);
-      set->AddSubject(name, mesh);
-    }
-  }
-  auto estimator = StatisticalModelEstimator<>::New();
-  estimator->SetInput(set);
-  estimator->SetVarianceProportion(1.0);
-  estimator->SetOutlierThreshold(0.0);
-  estimator->Update();
-  return estimator->GetOutput()->GetContent();
-}
-
 /** With soft tissue about it, as far as its air is dark. */
 CTImage::Pointer
 Embed(const CTImage * ct, double softTissue)
@@ -84,53 +57,6 @@ Embed(const CTImage * ct, double softTissue)
   pad->SetConstant(static_cast<float>(softTissue));
   pad->Update();
   return pad->GetOutput();
-}
-
-struct Distances
-{
-  double mean{ 0.0 };
-  double most{ 0.0 }; ///< 95 %
-};
-
-/** Of both surfaces' vertices to the other surface. */
-Distances
-Compare(const MeshArrays & mesh, const TriangleSurface & truth)
-{
-  std::vector<TriangleTree::Triangle> ofMesh, ofTruth;
-  std::vector<bool>                   outside(mesh.points.size(), false);
-  for (const auto & face : BoundaryFaces(mesh))
-  {
-    ofMesh.push_back({ mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] });
-    for (const IdType p : face)
-    {
-      outside[static_cast<std::size_t>(p)] = true;
-    }
-  }
-  for (const auto & t : truth.triangles)
-  {
-    ofTruth.push_back({ truth.points[t[0]], truth.points[t[1]], truth.points[t[2]] });
-  }
-  const TriangleTree  meshTree(ofMesh), truthTree(ofTruth);
-  std::vector<double> all;
-  for (std::size_t p = 0; p < mesh.points.size(); ++p)
-  {
-    if (outside[p])
-    {
-      all.push_back(std::sqrt(truthTree.FindNearest(mesh.points[p]).squaredDistance));
-    }
-  }
-  for (std::size_t i = 0; i < truth.points.size(); i += 4)
-  {
-    all.push_back(std::sqrt(meshTree.FindNearest(truth.points[i]).squaredDistance));
-  }
-  std::sort(all.begin(), all.end());
-  Distances result;
-  for (const double d : all)
-  {
-    result.mean += d / static_cast<double>(all.size());
-  }
-  result.most = all[all.size() * 95 / 100];
-  return result;
 }
 
 RigidPose
@@ -150,13 +76,8 @@ Disturb(const RigidPose & pose, const Trials & trials, std::mt19937_64 & random)
 void
 Run(const Trials & trials)
 {
-  std::vector<std::pair<std::string, MeshArrays>> subjects;
-  for (const auto & entry : fs::directory_iterator(trials.registered))
-  {
-    subjects.emplace_back(entry.path().stem().string(), ReadMeshArrays(entry.path().string()));
-  }
-  std::sort(subjects.begin(), subjects.end(), [](const auto & a, const auto & b) { return a.first < b.first; });
-  std::uint64_t index = 0;
+  const NamedSubjects subjects = ReadSubjects(trials.registered);
+  std::uint64_t       index = 0;
   for (const auto & [name, truth] : subjects)
   {
     // Each subject has noise and a start of its own.

@@ -1,6 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneAtlasInputs.h"
 #include "boneCommands.h"
 #include "boneInputOptions.h"
 #include "boneOptions.h"
@@ -13,7 +14,9 @@
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
+#include "boneLabelCrop.h"
 #include "boneOutputTransaction.h"
+#include "boneRegistrationReport.h"
 #include "boneStageClock.h"
 #include "boneStagingFolder.h"
 
@@ -31,11 +34,19 @@ namespace bone
 {
 namespace
 {
+/** The atlas that finds the bone. */
+struct AtlasOptions
+{
+  std::string           file;
+  AtlasVolumeParameters parameters;
+};
+
 struct BuildOptions
 {
   std::string        ct;
   std::string        series;
   BoneOptions        bone;
+  AtlasOptions       atlas; ///< in place of a label map
   std::string        output;
   BuildParameters    parameters;
   BuildFiles         files;   ///< of the report that the parameters come from
@@ -61,12 +72,20 @@ Complete(BuildOptions options)
     options.ct = former.image;
     options.series = former.series;
     options.bone = { { former.labels, wanted, former.labelNames }, former.initialContours, former.structure };
+    options.atlas.file = former.atlas;
   }
-  if (wanted.empty() && (!former.labelName.empty() || options.parameters.plan.label != 0))
+  if (options.atlas.file.empty() && wanted.empty() && (!former.labelName.empty() || options.parameters.plan.label != 0))
   {
     wanted = { former.labelName.empty() ? std::to_string(options.parameters.plan.label) : former.labelName };
   }
-  options.bone.Verify();
+  if (options.atlas.file.empty())
+  {
+    options.bone.Verify();
+  }
+  else if (!options.bone.labels.file.empty() || !options.bone.init.empty() || !wanted.empty())
+  {
+    throw UsageError("--atlas finds the bone by itself: leave --labels, --label and --init out");
+  }
   return options;
 }
 
@@ -150,6 +169,7 @@ struct BuildJob
   BoneInput   input;
   std::string folder;
   double      secondsOfReading{ 0.0 };
+  std::string registration; ///< of the atlas, as JSON; empty without one
 };
 
 BuildReport
@@ -159,11 +179,16 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   const LabelOptions & labels = options.bone.labels;
   BuildParameters      parameters = options.parameters;
   parameters.plan.label = bone.label;
+  if (!job.registration.empty())
+  {
+    DrawOutlineToEdges(*ct, parameters.contours);
+  }
   const BuildPlanParameters & plan = parameters.plan;
   BuildReport                 report;
   report.version = BONETK_VERSION;
-  report.files = { options.ct, options.series,    labels.file,           labels.names,
-                   bone.name,  options.bone.init, options.bone.structure };
+  report.files = { options.ct,        options.series,         labels.file,       labels.names, bone.name,
+                   options.bone.init, options.bone.structure, options.atlas.file };
+  report.registration = job.registration;
   report.times.emplace_back("reading", job.secondsOfReading);
   StagingFolder staging(job.folder);
   VerifyFolder(job.folder);
@@ -234,7 +259,7 @@ JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds)
     {
       throw UsageError("--label: " + name.substr(1) + " is the folder of two bones; build one of them by itself");
     }
-    jobs.push_back({ std::move(input), folder + name, seconds });
+    jobs.push_back({ std::move(input), folder + name, seconds, "" });
   }
   return jobs;
 }
@@ -298,6 +323,17 @@ BuildBones(const BuildOptions & options, const CTImage * ct, const std::vector<B
   }
 }
 
+/** The bone that the atlas finds, as a label map of its own. */
+BuildJob
+FindByAtlas(const BuildOptions & options, const CTImage * ct, Session & session)
+{
+  const auto          found = FindInCT(options.atlas.file, ct, options.atlas.parameters, session);
+  LabelImage::Pointer labels = MaskOfLabel(found->GetLabelImage(), 0);
+  BuildJob            job{ { { labels, 1, "" }, nullptr }, options.output, 0.0, "" };
+  job.registration = ReportRegistration(found->GetResult()).dump();
+  return job;
+}
+
 void
 RunBuild(const BuildOptions & given, Session & session)
 {
@@ -313,8 +349,15 @@ RunBuild(const BuildOptions & given, Session & session)
   }
   Lap                    lap;
   const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
-  auto                   bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
-  const auto             jobs = JobsOf(std::move(bones), options.output, lap());
+  if (!options.atlas.file.empty())
+  {
+    BuildJob job = FindByAtlas(options, ct, session);
+    job.secondsOfReading = lap();
+    BuildBone(options, ct, job, session);
+    return;
+  }
+  auto       bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
+  const auto jobs = JobsOf(std::move(bones), options.output, lap());
   if (jobs.size() == 1)
   {
     BuildBone(options, ct, jobs.front(), session);
@@ -353,6 +396,10 @@ AddBuildCommand(CLI::App & app, Action & action)
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series");
   AddSeriesOption(command, options->series);
   options->bone.AddTo(command, true);
+  command->add_option("--atlas",
+                      options->atlas.file,
+                      "Statistical model with density (.h5) that finds the bone, in place of a label map or contours");
+  AddParameterOptions(command, options->atlas.parameters, { "mirror" });
   command
     ->add_option("-o,--output",
                  options->output,

@@ -201,7 +201,7 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
 void
 AddRegisterCommand(CLI::App & app, Action & action)
 {
-  auto * group = app.add_subcommand("register", "Where a bone lies: a model to X-rays");
+  auto * group = app.add_subcommand("register", "Where a bone lies: a model or an atlas to X-rays or a CT");
   group->require_subcommand(1);
   auto   options = std::make_shared<RegisterRigidOptions>();
   auto * command = group->add_subcommand(
@@ -219,5 +219,6 @@ AddRegisterCommand(CLI::App & app, Action & action)
   command->callback(
     [options, &action] { action = [options](Session & session) { RunRegisterRigid(*options, session); }; });
   AddRegisterDeformCommand(*group, action);
+  AddRegisterVolumeCommand(*group, action);
 }
 } // namespace bone

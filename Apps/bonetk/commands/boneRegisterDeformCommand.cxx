@@ -1,6 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneAtlasInputs.h"
 #include "boneCommands.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
@@ -36,17 +37,6 @@ std::string
 SampleNameOf(const RegisterDeformOptions & options, int sample)
 {
   return options.output + "_S" + std::to_string(sample + 1) + ".vtu";
-}
-
-StatisticalModel::Pointer
-ReadAtlasWithDensity(const std::string & path)
-{
-  auto atlas = ReadStatisticalModel(path);
-  if (!atlas->GetContent().mean.HasDensity())
-  {
-    throw IOError(path, "has no density, which X-rays show: train it with meshes that have one (bonetk fit, build)");
-  }
-  return atlas;
 }
 
 /** Coefficients in standard deviations, the first few of them. */
@@ -131,7 +121,7 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   const auto & result = registration->GetResult();
   WriteMeshArrays(result.mesh, options.output + ".vtu");
   WriteRigidTransform(*registration->GetTransform(), options.output + ".tfm");
-  WritePosterior(result, options.output + "_posterior.h5");
+  WritePosterior(result.coefficients, result.covariance, result.pointDeviations, options.output + "_posterior.h5");
   if (options.samples > 0)
   {
     const DeformablePosterior posterior(atlas->GetContent(), parameters, result);

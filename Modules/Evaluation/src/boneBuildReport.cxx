@@ -244,13 +244,14 @@ ToJson(const BuildReport & report)
 {
   nlohmann::ordered_json json;
   json["version"] = report.version;
-  json["input"] = { { "image", report.files.image },
-                    { "series", report.files.series },
-                    { "labels", report.files.labels },
-                    { "labelNames", report.files.labelNames },
-                    { "labelName", report.files.labelName },
-                    { "initialContours", report.files.initialContours },
-                    { "structure", report.files.structure } };
+  json["input"] = { { "image", report.files.image },         { "series", report.files.series },
+                    { "labels", report.files.labels },       { "labelNames", report.files.labelNames },
+                    { "labelName", report.files.labelName }, { "initialContours", report.files.initialContours },
+                    { "structure", report.files.structure }, { "atlas", report.files.atlas } };
+  if (!report.registration.empty())
+  {
+    json["registration"] = nlohmann::json::parse(report.registration);
+  }
   json["parameters"] = nlohmann::ordered_json::parse(ToJson(report.parameters));
   json["resolution"] = { { "meanSliceDistanceMm", report.meanSliceDistance },
                          { "askedSliceStepMm", report.resolution.sliceStep },

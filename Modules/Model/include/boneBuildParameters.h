@@ -98,6 +98,7 @@ struct BuildFiles
   std::string labelName;       ///< of the bone; empty: the plan's label says it
   std::string initialContours; ///< empty: none
   std::string structure;       ///< of a DICOM structure set; empty: its only one
+  std::string atlas;           ///< that finds the bone; empty: none
 };
 
 /** A JSON object with an object for each stage, which holds every parameter by its name; numbers are exact, infinity is

@@ -32,6 +32,11 @@ CropToBone(const CTImage *             ct,
 double
 FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan);
 
+/** The outline that an atlas found in `ct` is drawn to the CT's edges by the snakes, within 1.5 mm or two voxels: nobody
+ * drew it. */
+void
+DrawOutlineToEdges(const itk::ImageBase<3> & ct, SnakeContourParameters & contours);
+
 /** Numbers of tetrahedra of the coarser levels; what is below 1 is a share of the first. Throws std::invalid_argument
  * where they do not descend from `finest`. */
 std::vector<IdType>

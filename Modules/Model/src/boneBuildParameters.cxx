@@ -184,8 +184,8 @@ ReadBuildParameters(const std::string & path, BuildParameters & parameters, Buil
       const auto text = [&input = json.at("input")](const char * name) {
         return input.contains(name) ? TextOf(input.at(name)) : std::string();
       };
-      files = { text("image"),     text("series"),          text("labels"),   text("labelNames"),
-                text("labelName"), text("initialContours"), text("structure") };
+      files = { text("image"),     text("series"),          text("labels"),    text("labelNames"),
+                text("labelName"), text("initialContours"), text("structure"), text("atlas") };
     }
   }
   catch (const IOError &)

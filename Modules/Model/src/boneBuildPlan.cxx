@@ -47,6 +47,15 @@ FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan
   return bound;
 }
 
+void
+DrawOutlineToEdges(const itk::ImageBase<3> & ct, SnakeContourParameters & contours)
+{
+  constexpr double least = 1.5, voxels = 2.0;
+  const auto &     spacing = ct.GetSpacing();
+  contours.refineLabelOutline = true;
+  contours.refineDistance = std::max(least, voxels * *std::max_element(spacing.begin(), spacing.end()));
+}
+
 std::vector<IdType>
 CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest)
 {

@@ -41,16 +41,18 @@ private:
   Eigen::MatrixXd                        m_Factor;
 };
 
-/** A factor F of the result's covariance: F F^T, so that mean + F z with standard normal z is drawn from the
- * posterior. */
+/** A factor F of a covariance: F F^T, so that mean + F z with standard normal z is drawn from the posterior. */
 Eigen::MatrixXd
-PosteriorFactor(const DeformableRegistrationResult & result);
+PosteriorFactor(const Eigen::MatrixXd & covariance);
 
-/** Writes `mean` (#n by 1: six steps of the pose, 0, then the coefficients), `covariance` and `factor` (#n by #n) and
- * `pointDeviations` (#points by 3, mm, along the geometry's axes) into an HDF5 file (.h5), the whole file or none.
- * Throws IOError. */
+/** Writes a registration's `mean` (#n by 1: six steps of the pose, 0, then the coefficients), `covariance` and `factor`
+ * (#n by #n) and `pointDeviations` (#points by 3, mm, along the axes of the space that the pose leads into) into an
+ * HDF5 file (.h5), the whole file or none. Throws IOError. */
 void
-WritePosterior(const DeformableRegistrationResult & result, const std::string & path);
+WritePosterior(const Eigen::VectorXd &      coefficients,
+               const Eigen::MatrixXd &      covariance,
+               const std::vector<Vector3> & pointDeviations,
+               const std::string &          path);
 } // namespace bone
 
 #endif

@@ -60,9 +60,10 @@ struct DeformableRegistrationResult
  * `initial`, an evolution strategy searches the pose and the first modes of shape. Then Levenberg-Marquardt steps over
  * all parameters, from coarse to fine images, find the maximum of the posterior. The prior is a standard normal
  * distribution of all coefficients, the likelihood exp(-precision * cost) with the cost of PatchGradientCorrelation, on
- * the finest images times that of IntensityDifference near the bone, where the X-rays are line integrals of attenuation.
- * A precision is that at which the curvature of the cost agrees with how much the gradient's shares of separate blocks of
- * the images scatter: it needs no model of the noise, and counts noise that correlates over a block once.
+ * the finest images times that of IntensityDifference near the bone, where the X-rays are line integrals of
+ * attenuation. A precision is that at which the curvature of the cost agrees with how much the gradient's shares of
+ * separate blocks of the images scatter: it needs no model of the noise, and counts noise that correlates over a block
+ * once.
  *
  * The quality is that of RegisterRigid for the bone found, but from one view Suspect where the distinctness is below 2.
  * Throws std::invalid_argument where a view cannot be used, where its values are no line integrals of attenuation and

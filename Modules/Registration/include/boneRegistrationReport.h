@@ -8,6 +8,7 @@
 #include "boneDensityMesh.h"
 #include "boneImageIO.h"
 #include "boneRigidRegistration.h"
+#include "boneVolumeRegistration.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,12 +26,20 @@ nlohmann::json
 ReportViewCorrections(const std::vector<ViewCorrection> & views);
 
 /** The same of a deformable registration, `covariance` and `standardDeviations` being the pose's alone; without
- * `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations), `pointDeviation` (`mean` and
- * `largest` standard deviation of a point's position, mm), `precision` (by which the cost counts against the prior) and
- * `posterior`: `volumeMm3`, `meanDensity` (HU) and `massHuMm3` of the whole bone, each with `mean` and
+ * `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations), `pointDeviation` (`mean`
+ * and `largest` standard deviation of a point's position, mm), `precision` (by which the cost counts against the prior)
+ * and `posterior`: `volumeMm3`, `meanDensity` (HU) and `massHuMm3` of the whole bone, each with `mean` and
  * `standardDeviation`, and a list `regions` with the same of each `region`. */
 nlohmann::json
 ReportRegistration(const DeformableRegistrationResult & result);
+
+/** The same of a registration to a CT, without `distinctness`, `cost` and `views`; with `mirrored` (whether the atlas
+ * was reflected at x = 0 first), `support` (shares `visible` of the surface's points that the CT shows and `supported`
+ * of these on an edge, median distance `residualMm`) before the surface settled, `settledSupport` after, `settledMm`
+ * (mean motion), `repaired` (inverted tetrahedra made positive) and `unsupported`: parts of the surface without an
+ * edge, each with `centre`, `extentMm` and `share`. */
+nlohmann::json
+ReportRegistration(const VolumeRegistrationResult & result);
 
 /** The covariance of a deformable registration's pose as RigidRegistrationResult has it: of translation (mm) and
  * rotation vector (radians) about the centre, along the geometry's axes. */

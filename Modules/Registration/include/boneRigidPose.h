@@ -21,6 +21,8 @@ namespace bone
  * X-ray geometry, mm. */
 struct RigidPose
 {
+  static constexpr Eigen::Index Steps = 6; ///< numbers of a small motion
+
   Eigen::Matrix3d rotation{ Eigen::Matrix3d::Identity() };
   Vector3         translation{ Vector3::Zero() };
   Vector3         centre{ Vector3::Zero() };

@@ -27,19 +27,6 @@ ScaledMode(const PrincipalModes & modes, Eigen::Index k)
   return std::sqrt(modes.variances[k]) * modes.modes.col(k);
 }
 
-/** Diagonal of the bounding box. */
-double
-ExtentOf(const std::vector<Vector3> & points)
-{
-  Vector3 lower = points.front(), upper = lower;
-  for (const Vector3 & x : points)
-  {
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-  }
-  return (upper - lower).norm();
-}
-
 constexpr double leastVolume = 1e-30; // a region that is not there
 
 /** How the signed volume of a tetrahedron rises with each of its points. */
@@ -99,6 +86,18 @@ CountOf(const PrincipalModes & modes, int most)
   return most == 0 ? modes.GetNumberOfModes() : std::min<Eigen::Index>(most, modes.GetNumberOfModes());
 }
 } // namespace
+
+double
+ExtentOf(const std::vector<Vector3> & points)
+{
+  Vector3 lower = points.front(), upper = lower;
+  for (const Vector3 & x : points)
+  {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  return (upper - lower).norm();
+}
 
 DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
                                  const DeformableRadiographParameters & parameters)

@@ -10,6 +10,10 @@
 
 namespace bone
 {
+/** Diagonal of the bounding box. */
+double
+ExtentOf(const std::vector<Vector3> & points);
+
 /** \struct CoarseModel
  * \brief A simplified mean with one density in each cell, and leading modes of shape: for many small images. */
 struct CoarseModel

@@ -16,7 +16,7 @@ DeformablePosterior::DeformablePosterior(const StatisticalModelContent &        
                                          DeformableRegistrationResult           result)
   : m_Result(std::move(result))
   , m_Model(std::make_unique<const DeformableModel>(atlas, parameters))
-  , m_Factor(PosteriorFactor(m_Result))
+  , m_Factor(PosteriorFactor(m_Result.covariance))
 {
   if (m_Model->GetNumberOfCoefficients() != m_Result.coefficients.size())
   {
@@ -42,25 +42,28 @@ DeformablePosterior::Draw(std::uint64_t seed) const
 }
 
 Eigen::MatrixXd
-PosteriorFactor(const DeformableRegistrationResult & result)
+PosteriorFactor(const Eigen::MatrixXd & covariance)
 {
-  const auto eigen = EigenOf<Eigen::Dynamic>(result.covariance);
+  const auto eigen = EigenOf<Eigen::Dynamic>(covariance);
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 void
-WritePosterior(const DeformableRegistrationResult & result, const std::string & path)
+WritePosterior(const Eigen::VectorXd &      coefficients,
+               const Eigen::MatrixXd &      covariance,
+               const std::vector<Vector3> & pointDeviations,
+               const std::string &          path)
 {
-  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(6 + result.coefficients.size(), 1);
-  mean.bottomRows(result.coefficients.size()) = result.coefficients;
-  Eigen::MatrixXd deviations(static_cast<Eigen::Index>(result.pointDeviations.size()), 3);
-  for (std::size_t p = 0; p < result.pointDeviations.size(); ++p)
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(6 + coefficients.size(), 1);
+  mean.bottomRows(coefficients.size()) = coefficients;
+  Eigen::MatrixXd deviations(static_cast<Eigen::Index>(pointDeviations.size()), 3);
+  for (std::size_t p = 0; p < pointDeviations.size(); ++p)
   {
-    deviations.row(static_cast<Eigen::Index>(p)) = result.pointDeviations[p].transpose();
+    deviations.row(static_cast<Eigen::Index>(p)) = pointDeviations[p].transpose();
   }
   WriteMatrices({ { "mean", mean },
-                  { "covariance", result.covariance },
-                  { "factor", PosteriorFactor(result) },
+                  { "covariance", covariance },
+                  { "factor", PosteriorFactor(covariance) },
                   { "pointDeviations", deviations } },
                 path);
 }

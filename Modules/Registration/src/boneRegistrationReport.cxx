@@ -88,6 +88,17 @@ ReportMotion(const RigidPose & pose, const Eigen::Matrix<double, 6, 6> & covaria
            { "standardDeviations", deviations } };
 }
 
+/** Of translation and rotation vector about the centre, along the axes of the space that the pose leads into. */
+template <typename TResult>
+Eigen::Matrix<double, 6, 6>
+TurnCovariance(const TResult & result)
+{
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = result.pose.rotation;
+  turn.bottomRightCorner<3, 3>() = result.pose.rotation;
+  return turn * result.covariance.topLeftCorner(6, 6) * turn.transpose();
+}
+
 /** What the results of all registrations have. */
 template <typename TResult>
 nlohmann::json
@@ -100,6 +111,45 @@ ReportPose(const TResult & result, const Eigen::Matrix<double, 6, 6> & covarianc
   report["cost"] = result.cost;
   report["views"] = result.costs;
   return report;
+}
+
+nlohmann::json
+ReportDeviations(const std::vector<Vector3> & ofPoints)
+{
+  double sum = 0.0, largest = 0.0;
+  for (const Vector3 & deviation : ofPoints)
+  {
+    sum += deviation.norm();
+    largest = std::max(largest, deviation.norm());
+  }
+  return { { "mean", sum / static_cast<double>(std::max<std::size_t>(1, ofPoints.size())) }, { "largest", largest } };
+}
+
+/** Volume, mean density and mass, each with its deviation, of the whole and of the regions. */
+nlohmann::json
+ReportRegions(const std::vector<RegionEstimate> & regions)
+{
+  const auto estimate = [](double mean, double deviation) {
+    return nlohmann::json{ { "mean", mean }, { "standardDeviation", deviation } };
+  };
+  nlohmann::json posterior;
+  posterior["regions"] = nlohmann::json::array();
+  for (const RegionEstimate & region : regions)
+  {
+    nlohmann::json entry{ { "volumeMm3", estimate(region.volume, region.volumeDeviation) },
+                          { "meanDensity", estimate(region.density, region.densityDeviation) },
+                          { "massHuMm3", estimate(region.mass, region.massDeviation) } };
+    if (region.region < 0)
+    {
+      posterior.update(entry);
+    }
+    else
+    {
+      entry["region"] = region.region;
+      posterior["regions"].push_back(entry);
+    }
+  }
+  return posterior;
 }
 
 /** The panel magnified, and with it its rows' true height. */
@@ -130,10 +180,7 @@ ReportRegistration(const RigidRegistrationResult & result)
 Eigen::Matrix<double, 6, 6>
 PoseCovariance(const DeformableRegistrationResult & result)
 {
-  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
-  turn.topLeftCorner<3, 3>() = result.pose.rotation;
-  turn.bottomRightCorner<3, 3>() = result.pose.rotation;
-  return turn * result.covariance.topLeftCorner<6, 6>() * turn.transpose();
+  return TurnCovariance(result);
 }
 
 nlohmann::json
@@ -158,35 +205,41 @@ ReportRegistration(const DeformableRegistrationResult & result)
   report["shape"] = part(0, result.shapeModes);
   report["smooth"] = part(result.shapeModes, result.smoothModes);
   report["density"] = part(result.shapeModes + result.smoothModes, result.densityModes);
-  double sum = 0.0, largest = 0.0;
-  for (const Vector3 & deviation : result.pointDeviations)
-  {
-    sum += deviation.norm();
-    largest = std::max(largest, deviation.norm());
-  }
-  const double points = static_cast<double>(std::max<std::size_t>(1, result.pointDeviations.size()));
-  report["pointDeviation"] = { { "mean", sum / points }, { "largest", largest } };
-  const auto estimate = [](double mean, double deviation) {
-    return nlohmann::json{ { "mean", mean }, { "standardDeviation", deviation } };
-  };
-  nlohmann::json & posterior = report["posterior"];
-  posterior["regions"] = nlohmann::json::array();
-  for (const RegionEstimate & region : result.regions)
-  {
-    nlohmann::json entry{ { "volumeMm3", estimate(region.volume, region.volumeDeviation) },
-                          { "meanDensity", estimate(region.density, region.densityDeviation) },
-                          { "massHuMm3", estimate(region.mass, region.massDeviation) } };
-    if (region.region < 0)
-    {
-      posterior.update(entry);
-    }
-    else
-    {
-      entry["region"] = region.region;
-      posterior["regions"].push_back(entry);
-    }
-  }
+  report["pointDeviation"] = ReportDeviations(result.pointDeviations);
+  report["posterior"] = ReportRegions(result.regions);
   report["precision"] = result.precision;
+  return report;
+}
+
+nlohmann::json
+ReportRegistration(const VolumeRegistrationResult & result)
+{
+  nlohmann::json report = ReportMotion(result.pose, TurnCovariance(result));
+  const auto     list = [](const Eigen::VectorXd & values) {
+    return std::vector<double>(values.data(), values.data() + values.size());
+  };
+  const auto support = [](const BoundarySupport & of) {
+    return nlohmann::json{ { "visible", of.visible }, { "supported", of.supported }, { "residualMm", of.residual } };
+  };
+  report["converged"] = result.quality != RegistrationQuality::Failed;
+  report["quality"] = ParameterText(result.quality);
+  report["mirrored"] = result.mirrored;
+  report["support"] = support(result.support);
+  report["settledSupport"] = support(result.settledSupport);
+  report["settledMm"] = result.settled;
+  report["repaired"] = result.repaired;
+  report["shape"] = list(result.coefficients.head(result.shapeModes));
+  report["smooth"] = list(result.coefficients.tail(result.smoothModes));
+  report["density"] = list(result.densityScores);
+  report["pointDeviation"] = ReportDeviations(result.pointDeviations);
+  report["unsupported"] = nlohmann::json::array();
+  for (const UnsupportedPatch & patch : result.unsupported)
+  {
+    report["unsupported"].push_back({ { "centre", { patch.centre.x(), patch.centre.y(), patch.centre.z() } },
+                                      { "extentMm", patch.extent },
+                                      { "share", patch.share } });
+  }
+  report["posterior"] = ReportRegions(result.regions);
   return report;
 }
 

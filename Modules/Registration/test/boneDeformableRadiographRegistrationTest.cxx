@@ -444,7 +444,7 @@ TEST(DeformablePosterior, BonesDrawnScatterAsStated)
     EXPECT_NEAR(std::sqrt(drawn[k] / stated[k]), 1.0, 0.15) << stated.transpose() / squares.size();
   }
   EXPECT_EQ(posterior.Draw(3).points, posterior.Draw(3).points);
-  const auto factor = PosteriorFactor(result);
+  const auto factor = PosteriorFactor(result.covariance);
   EXPECT_LT((factor * factor.transpose() - result.covariance).norm(), 1e-9 * result.covariance.norm());
   auto others = Parameters();
   others.smoothModes = 3;
