@@ -57,6 +57,8 @@ AddRegisterVolumeCommand(CLI::App & group, Action & action);
 void
 AddLabelCommand(CLI::App & app, Action & action);
 void
+AddEvaluateCommand(CLI::App & app, Action & action);
+void
 AddMeasureCommand(CLI::App & app, Action & action);
 void
 AddPlanCommand(CLI::App & app, Action & action);

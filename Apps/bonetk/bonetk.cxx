@@ -194,6 +194,7 @@ main(int argc, char ** argv)
   bone::AddSampleCommand(app, action);
   bone::AddRegisterCommand(app, action);
   bone::AddLabelCommand(app, action);
+  bone::AddEvaluateCommand(app, action);
   bone::AddMeasureCommand(app, action);
   bone::AddPlanCommand(app, action);
   bone::AddValidateCommand(app, action);

@@ -109,6 +109,23 @@ class Volume(TestCase):
                         ["build", "femur.nii.gz", "--atlas", "atlas.h5", "-o", "built"]):
             self.refuse(*command, says="not found")
 
+    def test_a_subject_against_the_atlas(self):
+        write_subject("bone.vtu", "wide.vtu", (1.2, 1.0), 0.0)
+        far = {}
+        for name in ("bone", "wide"):
+            out, _ = self.succeed("evaluate", f"{name}.vtu", "atlas.h5", "-o", f"{name}.json")
+            self.assertIn("standard deviations", out)
+            result = read_json(f"{name}.json")
+            self.assertFalse(result["registered"])
+            self.assertEqual(set(result["density"]), set(result["shape"]) - {"residualMm", "typicalResidualMm"} |
+                             {"residualMeanAbsolute", "residualBias"})
+            far[name] = result["shape"]
+        self.assertLess(far["bone"]["mahalanobisDistance"], 3.0)
+        self.assertGreater(far["bone"]["probability"], 0.01)
+        self.assertGreater(far["wide"]["mahalanobisDistance"], 4.0)
+        self.assertLess(far["wide"]["probability"], 1e-3)
+        self.refuse("evaluate", "bone.vtu", "ct.nii.gz", "-o", "e.json", says="ct.nii.gz")
+
     def test_usage(self):
         self.refuse_usage("label", "ct.nii.gz", "-o", "x.nii.gz", says="--atlas")
         self.refuse_usage("build", "ct.nii.gz", "--atlas", "atlas.h5", "--labels", "l.nii.gz", "-o", "x", says="--atlas")

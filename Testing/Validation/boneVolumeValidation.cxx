@@ -238,6 +238,10 @@ Run(const Trials & trials)
     const auto clock = std::chrono::steady_clock::now();
     const auto result = RegisterVolume(
       atlas, { MakeVoxelGrid(*ct, ct->GetBufferedRegion()), ct->GetBufferPointer() }, trials.parameters, Execution());
+    if (!trials.save.empty())
+    {
+      WriteMeshArrays(result.mesh, trials.save + "/" + name + ".vtu");
+    }
     nlohmann::json row{ { "subject", name } };
     row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     const Distances found = Compare(result.mesh, surface);
@@ -265,6 +269,18 @@ Run(const Trials & trials)
     {
       row["along"].push_back(std::round(100.0 * sums[bin] / std::max(counts[bin], 1.0)) / 100.0);
     }
+    // The registered model of the subject, in the CT's space, says where its points are.
+    double inside = 0.0;
+    for (std::size_t p = 0; p < truth.points.size(); ++p)
+    {
+      const Vector3 d = motion(truth.points[p]) - result.mesh.points[p];
+      for (int k = 0; k < 3; ++k)
+      {
+        inside += std::abs(d[k]) < 1.96 * result.pointDeviations[p][k] ? 1.0 : 0.0;
+      }
+    }
+    row["coverage"] = inside / (3.0 * static_cast<double>(truth.points.size()));
+    row["volume"] = { result.regions.back().volume, result.regions.back().volumeDeviation, EnclosedVolume(surface) };
     row["supported"] = result.support.supported;
     row["visible"] = result.support.visible;
     row["residual"] = result.support.residual;
