@@ -37,9 +37,10 @@ struct SolidDensity
  * and outside: in a piece of a tetrahedron the linear interpolant of its distance d at the corners is never below d,
  * and above it by R^2 / (2 rho) at most, R the radius of a ball around the piece and rho the least distance to the
  * capsule's axis (no second derivative of d is above 1 / rho). Pieces that the surface may pass are bisected at their
- * longest edge, those with the largest bounds first, until the bounds' sum is at most `relativeError` of the volume,
- * and, weighted with each tetrahedron's largest absolute coefficient, of the volume so weighted. The masses' bounds are
- * those weighted ones. Where the surface passes more than `mostPieces` pieces the error is left as it is then stated.
+ * longest edge, those with the largest bounds first, until the bounds' sum is at most `relativeError` of the volume.
+ * A mass' bound is that of the volume times the tetrahedron's largest absolute coefficient; their sum is brought to
+ * `relativeError` of the volume weighted with each tetrahedron's mean density, which is about the mass where no density
+ * is negative. Where the surface passes more than `mostPieces` pieces the error is left as it is then stated.
  *
  * The result does not depend on the number of threads. Inverted tetrahedra count negatively, as in MeasureRegions.
  *

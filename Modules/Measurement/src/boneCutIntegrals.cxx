@@ -127,6 +127,18 @@ public:
     return mass * this->CellVolume(piece.cell);
   }
 
+  /** Absolute value of each tetrahedron's mean density; empty without a density. */
+  std::vector<double>
+  MeanDensities() const
+  {
+    std::vector<double> means(m_HasDensity ? m_Mesh.tetrahedra.size() : 0, 0.0);
+    for (std::size_t t = 0; t < means.size(); ++t)
+    {
+      means[t] = std::abs(BernsteinIntegral(m_Mesh.degree[t], m_Mesh.coefficients.data() + t * m_Row, 1.0));
+    }
+    return means;
+  }
+
   /** Bound of the density's absolute value in each tetrahedron; empty without a density. */
   std::vector<double>
   LargestDensities() const
@@ -232,18 +244,17 @@ private:
   int                m_Row;
 };
 
-/** Bisects pieces that the surface may pass until their bounds are small enough. `largest`: bound of the density in
- * each tetrahedron, by which the bound of a mass is that of a volume; empty without a density. */
+/** Bisects pieces that the surface may pass until their bounds are small enough. */
 void
-RefineSolid(const SolidIntegrator &     integrator,
-            std::vector<SolidPiece> &   pieces,
-            const std::vector<double> & largest,
-            double                      relativeError,
-            const Execution &           execution,
-            std::size_t                 mostPieces)
+RefineSolid(const SolidIntegrator &   integrator,
+            std::vector<SolidPiece> & pieces,
+            double                    relativeError,
+            const Execution &         execution,
+            std::size_t               mostPieces)
 {
-  const auto massOf = [&largest](const SolidPiece & piece, double volume) {
-    return largest.empty() ? 0.0 : volume * largest[piece.cell];
+  const std::vector<double> largest = integrator.LargestDensities(), means = integrator.MeanDensities();
+  const auto                massOf = [](const SolidPiece & piece, double volume, const std::vector<double> & density) {
+    return density.empty() ? 0.0 : volume * density[piece.cell];
   };
   for (;;)
   {
@@ -252,9 +263,9 @@ RefineSolid(const SolidIntegrator &     integrator,
     for (const SolidPiece & piece : pieces)
     {
       volume += piece.volume;
-      mass += massOf(piece, std::abs(piece.volume));
+      mass += massOf(piece, std::abs(piece.volume), means);
       volumeError += piece.volumeError;
-      massError += massOf(piece, piece.volumeError);
+      massError += massOf(piece, piece.volumeError, largest);
       passed += piece.volumeError > 0.0 ? 1 : 0;
     }
     const bool volumeDone = volumeError <= relativeError * std::abs(volume);
@@ -269,7 +280,7 @@ RefineSolid(const SolidIntegrator &     integrator,
     std::vector<SolidPiece> next, halves;
     for (const SolidPiece & piece : pieces)
     {
-      if (piece.volumeError > volumeLimit || massOf(piece, piece.volumeError) > massLimit)
+      if (piece.volumeError > volumeLimit || massOf(piece, piece.volumeError, largest) > massLimit)
       {
         for (const SolidPiece & half : integrator.Bisect(piece))
         {
@@ -359,7 +370,7 @@ IntegrateSolid(const MeshArrays & mesh,
   std::vector<SolidPiece>   pieces = CutMesh(integrator, mesh.tetrahedra.size(), solid.capsule.has_value(), execution);
   if (solid.capsule)
   {
-    RefineSolid(integrator, pieces, largest, relativeError, execution, mostPieces);
+    RefineSolid(integrator, pieces, relativeError, execution, mostPieces);
   }
   std::vector<PartDensity> parts(pieces.size());
   execution.For(

@@ -190,6 +190,7 @@ ExpectWithin(const PartDensity & part, double volume, double mass, double relati
   EXPECT_LE(std::abs(part.volume - volume), part.volumeError + 1e-9 * volume);
   EXPECT_LE(std::abs(part.mass - mass), part.massError + 1e-9 * std::abs(mass));
   EXPECT_LE(part.volumeError, relativeError * volume);
+  EXPECT_LE(part.massError, 1.5 * relativeError * std::abs(mass)); // by the tetrahedra's means
   EXPECT_GT(part.massError, 0.0);
 }
 

@@ -75,6 +75,14 @@ TEST(FemurMeasures, KnownAnglesAndSizesAreFound)
   }
 }
 
+TEST(FemurMeasures, AnteversionIsSeenAlongTheLongAxisWhereACondyleIsHigher)
+{
+  FemurShape shape;
+  shape.medialRise = 9.0;
+  const auto list = MeasureFemur(FitFemur(shape.Surface(), shape.Landmarks()));
+  EXPECT_NEAR(ValueOf(list, "anteversion"), shape.anteversion, 0.8);
+}
+
 TEST(FemurMeasures, MoveWithTheBone)
 {
   const FemurShape shape;

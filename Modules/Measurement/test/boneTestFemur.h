@@ -109,6 +109,7 @@ struct FemurShape
   double neckShaftAngle{ 127 }; ///< degrees
   double anteversion{ 15.0 };   ///< degrees
   double neckRadius{ 13.5 };    ///< mm, at its waist, 30 mm from the head's centre
+  double medialRise{ 0.0 };     ///< mm, of the medial condyle above the lateral one
 
   /** From the shaft's axis to the head: a right femur in LPS. */
   Vector3
@@ -137,7 +138,7 @@ struct FemurShape
                  along - neckLength,
                  -along });
     const double shaft = segment(Vector3(0, 0, 0), Vector3(0, 0, -350)) - 14.3;
-    const double medial = (x - Vector3(21, 0, -350)).norm() - 20.2;
+    const double medial = (x - Vector3(21, 0, -350 + medialRise)).norm() - 20.2;
     const double lateral = (x - Vector3(-21, 0, -350)).norm() - 20.2;
     return std::min({ head, neck, shaft, medial, lateral });
   }
