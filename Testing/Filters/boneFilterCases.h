@@ -5,6 +5,7 @@
 #define boneFilterCases_h
 
 #include "boneAtlasRegistrationFilter.h"
+#include "boneAtlasVolumeRegistration.h"
 #include "boneAttenuationImageFilter.h"
 #include "boneBuildPipeline.h"
 #include "boneDRRAdjointFilter.h"
@@ -212,6 +213,12 @@ BONE_CASE(DeformableCase,
             f.SetSearchPixels(32);
             f.SetIterations(2);
           });
+BONE_CASE(VolumeCase, AtlasVolumeRegistration<>, "Image", true, BONE_ATLAS_VOLUME_PARAMETERS, {
+  f.SetImage(missing ? nullptr : s.ct.GetPointer());
+  f.SetModel(s.atlas);
+  f.SetHypotheses(20000);
+  f.SetSmoothModes(0);
+});
 BONE_CASE(EstimatorCase, StatisticalModelEstimator<>, "TrainingSet", false, BONE_STATISTICAL_MODEL_PARAMETERS, {
   f.RemoveSubjects();
   if (!missing)

@@ -244,6 +244,7 @@ using Cases = testing::Types<PhantomCase,
                              PreprocessCase,
                              RigidCase,
                              DeformableCase,
+                             VolumeCase,
                              EstimatorCase>;
 TYPED_TEST_SUITE(Filter, Cases, );
 

@@ -6,7 +6,7 @@ import tempfile
 import nibabel
 import numpy
 
-from bonetk_testing import TestCase, bonetk, main, read_json, write_image
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_image
 from deform_test import SIZES, points, write_subject
 
 FAST = ["--hypotheses", 50000, "--smooth-modes", 60]
@@ -108,6 +108,13 @@ class Volume(TestCase):
                         ["label", "femur.nii.gz", "--atlas", "atlas.h5", *FAST, "-o", "l2.nii.gz"],
                         ["build", "femur.nii.gz", "--atlas", "atlas.h5", "-o", "built"]):
             self.refuse(*command, says="not found")
+
+    def test_the_example_does_the_same(self):
+        code, out, err = run(os.path.join(EXAMPLES, "boneAtlasVolumeExample"), "atlas.h5", "mirror.nii.gz", "e.vtu", "e.nii.gz")
+        self.assertEqual(code, 0, err)
+        self.assertIn("of the other side", out)
+        self.succeed("validate", "e.vtu")
+        self.assertGreater(dice(voxels("e.nii.gz") > 0, voxels("mirror_l.nii.gz") > 0), 0.93)
 
     def test_a_subject_against_the_atlas(self):
         write_subject("bone.vtu", "wide.vtu", (1.2, 1.0), 0.0)

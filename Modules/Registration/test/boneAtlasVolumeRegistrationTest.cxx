@@ -196,6 +196,35 @@ TEST(AtlasVolumeRegistration, IsTheSameForAnyNumberOfThreads)
   EXPECT_EQ(one->GetOutput()->GetArrays().coefficients, two->GetOutput()->GetArrays().coefficients);
 }
 
+TEST(AtlasVolumeRegistration, TakesImagesOfIntegers)
+{
+  using Shorts = itk::Image<short, 3>;
+  const auto atlas = test::BarAtlas();
+  const auto body = Body(atlas);
+  const auto image = ToImage(test::Scan(body, test::SomePose()));
+  auto       shorts = Shorts::New();
+  shorts->CopyInformation(image);
+  shorts->SetRegions(image->GetBufferedRegion());
+  shorts->Allocate();
+  std::transform(image->GetBufferPointer(),
+                 image->GetBufferPointer() + image->GetBufferedRegion().GetNumberOfPixels(),
+                 shorts->GetBufferPointer(),
+                 [](float v) { return static_cast<short>(std::lround(v)); });
+  auto model = StatisticalModel::New();
+  model->SetContent(atlas);
+  auto filter = AtlasVolumeRegistration<Shorts, DensityMesh<float>, itk::Image<unsigned char, 3>>::New();
+  filter->SetImage(shorts);
+  filter->SetModel(model);
+  filter->SetHypotheses(30000);
+  filter->SetSmoothModes(30);
+  filter->Update();
+  EXPECT_LT(DistanceOf(filter->GetOutput()->GetArrays(), Moved(body, test::SomePose())), 0.3);
+  EXPECT_GT(std::count(filter->GetLabelImage()->GetBufferPointer(),
+                       filter->GetLabelImage()->GetBufferPointer() + shorts->GetBufferedRegion().GetNumberOfPixels(),
+                       1),
+            1000);
+}
+
 TEST(AtlasVolumeRegistration, RefusesACTWithoutTheBone)
 {
   const auto  atlas = test::BarAtlas();
