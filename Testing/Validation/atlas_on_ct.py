@@ -203,7 +203,7 @@ The atlas of all {len(shapes)} femora. Dice of voxels with the label map, of the
 |---|---|---|---|---|
 {scans}
 A femur of which 48 mm are in the CT, at voxels of 3 mm, is not found: the joint's gap is not resolved, and the edges that are left suit many
-other places as well. Started at its true place the fit slides into the acetabulum (Dice 0.84). The left femur's label leaves out
+other places as well. Started at its true place the fit slides into the acetabulum (Dice 0.84 in a trial). The left femur's label leaves out
 what lies behind the nail.
 
 ## CTs without the bone
