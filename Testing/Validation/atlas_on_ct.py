@@ -84,10 +84,11 @@ def draw(save, subject, path):
     values, inside = read_voxels(ct), read_voxels(found) > -4000
     extent = numpy.nonzero(inside.any(axis=(1, 2)))[0]
     middle = [int(numpy.mean(numpy.nonzero(inside[x])[1])) for x in (extent[0] + 15, extent[-1] - 15)]
-    figure, axes = pyplot.subplots(2, 1, figsize=(9, 6.2))
+    figure, axes = pyplot.subplots(1, 2, figsize=(9, 5))
     for axis, z, place in zip(axes, middle, (slice(extent[0] - 20, extent[0] + 110), slice(extent[-1] - 110, extent[-1] + 20))):
-        axis.imshow(values[place, :, z].T, cmap="gray", vmin=-200, vmax=1200, origin="lower")
-        axis.contour(inside[place, :, z].T, [0.5], colors="tab:orange", linewidths=1)
+        across = slice(*numpy.array([-10, 10]) + numpy.nonzero(inside[place].any(axis=(0, 2)))[0][[0, -1]])
+        axis.imshow(values[place, across, z].T, cmap="gray", vmin=-200, vmax=1200, origin="lower")
+        axis.contour(inside[place, across, z].T, [0.5], colors="tab:orange", linewidths=1)
         axis.set_xlabel("mm along the bone")
         axis.set_ylabel("mm")
     figure.suptitle(f"{subject}: the ends, with neighbours that touch; the outline found")
@@ -190,7 +191,8 @@ volume. Seconds: median by the clock, two threads.
 |---|---|---|---|---|---|---|---|---|---|
 {table}
 Along the bone, mean distance by tenths: {", ".join(f"{end:.2f}" for end in ends)} mm. What is left lies at the ends, where the cortex is thin
-and neighbours touch. The worst run ({worst["found"]:.2f} mm):
+and neighbours touch. The worst run ({worst["found"]:.2f} mm; the fossa beside the neck is
+deeper than any of the others'):
 
 ![worst run](atlas_on_ct_worst.png)
 

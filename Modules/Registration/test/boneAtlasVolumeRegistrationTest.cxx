@@ -157,6 +157,42 @@ TEST(AtlasVolumeRegistration, FindsABodyOfTheOtherSideInTheMirror)
   EXPECT_LT(DistanceOf(mean, Moved(body, test::SomePose())), 3.0);
 }
 
+TEST(AtlasVolumeRegistration, TheMirrorChangesNothingButTheSide)
+{
+  const auto        atlas = test::BarAtlas();
+  const VoxelVolume ct = test::Scan(Body(atlas), test::SomePose());
+  VoxelGrid         mirrored = ct.grid;
+  mirrored.axes.row(0) *= -1.0;
+  mirrored.origin[0] *= -1.0;
+  AtlasVolumeParameters parameters;
+  parameters.hypotheses = 30000;
+  parameters.smoothModes = 30;
+  const auto one = RegisterVolume(atlas, ct.View(), parameters, Execution());
+  parameters.mirror = MirrorMode::Always;
+  const auto            other = RegisterVolume(atlas, { mirrored, ct.values.data() }, parameters, Execution());
+  const Eigen::Matrix3d mirror = Vector3(-1, 1, 1).asDiagonal();
+  EXPECT_LT((other.coefficients - one.coefficients).cwiseAbs().maxCoeff(), 1e-9);
+  ASSERT_EQ(other.mesh.points.size(), one.mesh.points.size());
+  for (std::size_t p = 0; p < one.mesh.points.size(); p += 50)
+  {
+    EXPECT_LT((other.mesh.points[p] - mirror * one.mesh.points[p]).norm(), 1e-6);
+    EXPECT_LT((other.pose.Apply(mirror * atlas.mean.points[p]) - mirror * one.pose.Apply(atlas.mean.points[p])).norm(),
+              1e-6);
+  }
+  // In the CT's space translations are reflected, and rotation vectors, which are axial, reflected and turned round.
+  const auto ofSteps = [](const VolumeRegistrationResult & result) {
+    Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = result.pose.rotation;
+    return Eigen::MatrixXd(turn * result.covariance.topLeftCorner<6, 6>() * turn.transpose());
+  };
+  Eigen::Matrix<double, 6, 6> reflect = Eigen::Matrix<double, 6, 6>::Zero();
+  reflect.topLeftCorner<3, 3>() = mirror;
+  reflect.bottomRightCorner<3, 3>() = -mirror;
+  const Eigen::MatrixXd expected = reflect * ofSteps(one) * reflect.transpose();
+  EXPECT_LT((ofSteps(other) - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff());
+  EXPECT_GT(std::abs(expected(0, 1)), 1e-6 * expected.cwiseAbs().maxCoeff()); // which changes its sign
+}
+
 TEST(AtlasVolumeRegistration, WhatTheImageDoesNotShowFollowsTheAtlas)
 {
   const auto       atlas = test::BarAtlas();
@@ -299,7 +335,15 @@ TEST(AtlasVolumeRegistration, TakesTheDensityOfWhatTheCTShows)
       ASSERT_EQ(result.densityScores.size(), 1);
       EXPECT_NEAR(result.densityScores[0], score, 0.02);
       const auto beyond = CellsBeyond(atlas.mean, view);
-      EXPECT_EQ(std::count(beyond.begin(), beyond.end(), true) > 0, view.grid.size[2] == half.grid.size[2]);
+      // The grid's axes are those of space.
+      const double end = view.grid.Centre(0, 0, view.grid.size[2] - 1)[2];
+      for (std::size_t t = 0; t < beyond.size(); ++t)
+      {
+        const Id4 & ids = atlas.mean.tetrahedra[t];
+        ASSERT_EQ(beyond[t], std::any_of(ids.begin(), ids.end(), [&](IdType p) {
+                    return atlas.mean.points[static_cast<std::size_t>(p)][2] > end;
+                  }));
+      }
       for (std::size_t t = 0; t < beyond.size(); ++t)
       {
         ASSERT_EQ(result.mesh.coefficients[4 * t], (beyond[t] ? atlas.mean : fitted).coefficients[4 * t]);

@@ -116,6 +116,22 @@ TEST(BoundaryFit, StepsBringTheMeanOntoABodyOfTheAtlas)
   EXPECT_LT(support.residual, 0.25);
 }
 
+TEST(BoundaryFit, WithoutEdgesThePriorAloneCounts)
+{
+  const StatisticalModelContent  atlas = test::BarAtlas();
+  DeformableRadiographParameters parameters;
+  parameters.smoothModes = 0;
+  const DeformableModel model(atlas, parameters);
+  const VoxelVolume     ct = Along([](double) { return 40.0; });
+  const VolumeView      view = ct.View();
+  BoundaryFit           fit(model, view, 150.0);
+  VolumeState           state{ RigidPose(), Eigen::Vector2d(1.5, -1.0) };
+  fit.Step(state, 5.0, 1, Execution());
+  EXPECT_NEAR(state.coefficients[0], 0.0, 1e-9);
+  EXPECT_EQ(state.coefficients[1], -1.0); // not among the modes of the step
+  EXPECT_NEAR(state.pose.translation.norm(), 0.0, 1e-9);
+}
+
 TEST(BoundaryFit, PartsWithoutAnEdgeAreNamed)
 {
   const StatisticalModelContent  atlas = test::BarAtlas();
