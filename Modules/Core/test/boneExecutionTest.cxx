@@ -64,6 +64,20 @@ TEST(Execution, LoopsReportTheirPartOfTheFiltersProgress)
   EXPECT_GE(filter->reported.size(), 3u);
 }
 
+TEST(Execution, TheEndIsReportedHoweverNearTheLastStepWas)
+{
+  auto                  filter = Recorder::New();
+  const bone::Execution all(filter);
+  all.Part(0.0, 0.9).Report(1.0);
+  all.Part(0.9, 1.0).Report(0.99);
+  EXPECT_FLOAT_EQ(filter->GetProgress(), 0.999F);
+  all.Part(0.9, 1.0).Report(1.0);
+  EXPECT_FLOAT_EQ(filter->GetProgress(), 1.0F);
+  const std::size_t count = filter->reported.size();
+  all.Report(1.0);
+  EXPECT_EQ(filter->reported.size(), count); // once
+}
+
 TEST(Execution, ProgressNeverGoesBack)
 {
   auto                  filter = Recorder::New();

@@ -82,7 +82,9 @@ Execution::Report(double share) const
   constexpr double least = 0.002; // an observer may be slow: a person sees no smaller steps
   State &          state = *m_State;
   const double     progress = m_From + std::clamp(share, 0.0, 1.0) * (m_To - m_From);
-  if (state.filter != nullptr && progress >= state.reported + least && std::this_thread::get_id() == state.caller)
+  constexpr double end = 1.0 - 1e-9;
+  const bool       shows = progress >= state.reported + least || (progress >= end && state.reported < end);
+  if (state.filter != nullptr && shows && std::this_thread::get_id() == state.caller)
   {
     state.reported = progress;
     state.filter->UpdateProgress(static_cast<float>(progress));
