@@ -5,6 +5,7 @@
 
 #include "boneTestBodies.h"
 #include "boneTestFemur.h"
+#include "boneTestMeasures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,20 +14,6 @@ namespace
 {
 using namespace bone;
 using test::FemurShape;
-
-double
-ValueOf(const MeasureList & list, const std::string & name)
-{
-  for (const Measure & measure : list.measures)
-  {
-    if (measure.name == name)
-    {
-      return measure.value.at(0);
-    }
-  }
-  ADD_FAILURE() << name << " is missing";
-  return 0.0;
-}
 
 std::string
 ReasonOf(const MeasureList & list, const std::string & name)

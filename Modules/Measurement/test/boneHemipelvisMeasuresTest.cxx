@@ -5,6 +5,7 @@
 
 #include "boneHemipelvisPhantom.h"
 #include "boneTestFemur.h"
+#include "boneTestMeasures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,20 +34,6 @@ PhantomLandmarks()
   return { { "acetabulum", Vector3(3, -2, 2) },
            { "asis", Vector3(-12, -40, 35) },
            { "pubic_tubercle", Vector3(40, -40, -15) } };
-}
-
-double
-ValueOf(const MeasureList & list, const std::string & name)
-{
-  for (const Measure & measure : list.measures)
-  {
-    if (measure.name == name)
-    {
-      return measure.value.at(0);
-    }
-  }
-  ADD_FAILURE() << name << " is missing";
-  return 0.0;
 }
 
 std::string

@@ -172,7 +172,7 @@ BoundaryFit::FindTargets(const std::vector<Vector3> & points,
   return targets;
 }
 
-double
+void
 BoundaryFit::Step(VolumeState & state, double range, Eigen::Index modes, const Execution & execution)
 {
   constexpr double                  leastDeviation = 0.25; // mm
@@ -227,13 +227,6 @@ BoundaryFit::Step(VolumeState & state, double range, Eigen::Index modes, const E
   const Eigen::VectorXd step = m_Hessian.ldlt().solve(slope);
   state.pose = state.pose.Moved(step.head<RigidPose::Steps>());
   state.coefficients.head(modes) += step.tail(modes);
-  const std::vector<Vector3> moved = this->Points(state);
-  double                     sum = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    sum += (moved[i] - points[i]).norm();
-  }
-  return sum / static_cast<double>(points.size());
 }
 
 std::vector<Vector3>

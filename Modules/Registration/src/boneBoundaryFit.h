@@ -26,9 +26,9 @@ struct BoundaryTarget
   double weight{ 0.0 };    ///< 0: no edge; 1: a clear one
 };
 
-/** The outermost place along an outward normal at which density falls from bone's to less, within `range` mm of `x`,
- * clear and near ones first. The edge lies where the density is half-way between the highest just inside and the least
- * just outside. */
+/** A place along an outward normal at which density falls from bone's to less, within `range` mm of `x`: the clearest
+ * and nearest, where one beyond another that leads out of a bone counts less. The edge lies where the density is
+ * half-way between the highest just inside and the least just outside. */
 BoundaryTarget
 FindBoundary(const VolumeView & ct, const Vector3 & x, const Vector3 & outward, double range, double boneThreshold);
 
@@ -46,9 +46,8 @@ public:
 
   BoundaryFit(const DeformableModel & model, const VolumeView & ct, double boneThreshold);
 
-  /** A step with edges sought within `range` mm and the first `modes` modes; the others stay. Returns the mean distance
-   * that surface points moved, mm. */
-  double
+  /** A step with edges sought within `range` mm and the first `modes` modes; the others stay. */
+  void
   Step(VolumeState & state, double range, Eigen::Index modes, const Execution & execution);
 
   /** Moves each of the surface's points along its normal onto the edges, as a smooth field of offsets: what modes

@@ -40,30 +40,6 @@ VolumeSlopes(const std::vector<Vector3> & points, const Id4 & ids)
   return slopes;
 }
 
-/** Volume, mean density and their product of each region, and last of the whole. */
-Eigen::MatrixXd
-MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const std::vector<double> & means)
-{
-  const int       most = mesh.region.empty() ? 0 : *std::max_element(mesh.region.begin(), mesh.region.end());
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(most + 2, 3);
-  for (std::size_t t = 0; t < means.size(); ++t)
-  {
-    const Id4 &  ids = mesh.tetrahedra[t];
-    const double volume = SignedVolume(points[static_cast<std::size_t>(ids[0])],
-                                       points[static_cast<std::size_t>(ids[1])],
-                                       points[static_cast<std::size_t>(ids[2])],
-                                       points[static_cast<std::size_t>(ids[3])]);
-    for (const Eigen::Index row :
-         { static_cast<Eigen::Index>(mesh.region.empty() ? 0 : mesh.region[t]), static_cast<Eigen::Index>(most + 1) })
-    {
-      sums(row, 0) += volume;
-      sums(row, 2) += volume * means[t];
-    }
-  }
-  sums.col(1) = sums.col(2).array() / sums.col(0).array().max(leastVolume);
-  return sums;
-}
-
 std::vector<Vector3>
 Displace(std::vector<Vector3>                      points,
          const std::vector<std::vector<Vector3>> & displacements,
@@ -97,6 +73,29 @@ ExtentOf(const std::vector<Vector3> & points)
     upper = upper.cwiseMax(x);
   }
   return (upper - lower).norm();
+}
+
+Eigen::MatrixXd
+MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const std::vector<double> & means)
+{
+  const int       most = mesh.region.empty() ? 0 : *std::max_element(mesh.region.begin(), mesh.region.end());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(most + 2, 3);
+  for (std::size_t t = 0; t < means.size(); ++t)
+  {
+    const Id4 &  ids = mesh.tetrahedra[t];
+    const double volume = SignedVolume(points[static_cast<std::size_t>(ids[0])],
+                                       points[static_cast<std::size_t>(ids[1])],
+                                       points[static_cast<std::size_t>(ids[2])],
+                                       points[static_cast<std::size_t>(ids[3])]);
+    for (const Eigen::Index row :
+         { static_cast<Eigen::Index>(mesh.region.empty() ? 0 : mesh.region[t]), static_cast<Eigen::Index>(most + 1) })
+    {
+      sums(row, 0) += volume;
+      sums(row, 2) += volume * means[t];
+    }
+  }
+  sums.col(1) = sums.col(2).array() / sums.col(0).array().max(leastVolume);
+  return sums;
 }
 
 DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,

@@ -14,6 +14,11 @@ namespace bone
 double
 ExtentOf(const std::vector<Vector3> & points);
 
+/** Volume (mm^3), mean density and their product of each region from 0 on, and last of the whole: a row each. `means`
+ * are those of the cells. */
+Eigen::MatrixXd
+MeasureCells(const MeshCells & mesh, const std::vector<Vector3> & points, const std::vector<double> & means);
+
 /** \struct CoarseModel
  * \brief A simplified mean with one density in each cell, and leading modes of shape: for many small images. */
 struct CoarseModel

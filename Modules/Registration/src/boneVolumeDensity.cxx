@@ -4,6 +4,7 @@
 #include "boneVolumeDensity.h"
 
 #include "boneBernstein.h"
+#include "boneDeformableModel.h"
 #include "boneMeanDensities.h"
 #include "boneReflection.h"
 
@@ -60,19 +61,11 @@ ScoreDensity(const StatisticalModelContent & atlas, const MeshArrays & mesh, con
 void
 MeasureDensities(const AtlasVolumeParameters & p, VolumeRegistrationResult & result)
 {
-  const std::vector<double> means = WithMeanDensities(result.mesh).coefficients;
+  const Eigen::MatrixXd table =
+    MeasureCells(result.mesh, result.mesh.points, WithMeanDensities(result.mesh).coefficients);
   for (RegionEstimate & region : result.regions)
   {
-    region.mass = 0.0;
-    for (std::size_t t = 0; t < means.size(); ++t)
-    {
-      const Id4 & ids = result.mesh.tetrahedra[t];
-      if (region.region < 0 || (result.mesh.region.empty() ? 0 : result.mesh.region[t]) == region.region)
-      {
-        const auto at = [&](std::size_t v) { return result.mesh.points[static_cast<std::size_t>(ids[v])]; };
-        region.mass += means[t] * SignedVolume(at(0), at(1), at(2), at(3));
-      }
-    }
+    region.mass = table(region.region < 0 ? table.rows() - 1 : region.region, 2);
     region.density = region.mass / region.volume;
     const double half = 0.5 * (p.softTissue + region.density);
     region.massDeviation = std::abs(half) * region.volumeDeviation;

@@ -93,12 +93,7 @@ FindBone(const DeformableModel &       model,
          const AtlasVolumeParameters & p,
          const Execution &             execution)
 {
-  VolumeSearchParameters search;
-  search.hypotheses = p.hypotheses;
-  search.leastShare = p.leastShare;
-  search.softTissue = p.softTissue;
-  search.seed = static_cast<std::uint64_t>(p.seed);
-  const std::vector<VolumeCandidate> candidates = SearchVolume(model, ct, search, execution.Part(0.0, 0.6));
+  const std::vector<VolumeCandidate> candidates = SearchVolume(model, ct, p, execution.Part(0.0, 0.6));
   BoundaryFit                        fit(model, ct, p.boneThreshold);
   std::optional<FoundBone>           best;
   for (std::size_t i = 0; i < candidates.size(); ++i)
@@ -223,33 +218,21 @@ MeasureRegions(const DeformableModel & model, const AtlasVolumeParameters & p, V
   coefficients.head(count) = result.coefficients;
   const auto            slopes = model.RegionSlopes(coefficients);
   const Eigen::MatrixXd covariance = result.covariance.bottomRightCorner(count, count);
-  const int             most =
-    model.mean.region.empty() ? 0 : *std::max_element(model.mean.region.begin(), model.mean.region.end());
-  for (int region = 0; region <= most + 1; ++region)
+  const MeshArrays &    mesh = result.mesh;
+  const Eigen::MatrixXd table = MeasureCells(mesh, mesh.points, std::vector<double>(mesh.tetrahedra.size(), 0.0));
+  for (Eigen::Index row = 0; row < table.rows(); ++row)
   {
-    const bool     whole = region > most;
-    MeshArrays     part = result.mesh;
     RegionEstimate estimate;
-    estimate.region = whole ? -1 : region;
-    for (std::size_t t = 0; t < part.tetrahedra.size(); ++t)
-    {
-      const Id4 & ids = part.tetrahedra[t];
-      if (whole || (part.region.empty() ? 0 : part.region[t]) == region)
-      {
-        estimate.volume += SignedVolume(part.points[static_cast<std::size_t>(ids[0])],
-                                        part.points[static_cast<std::size_t>(ids[1])],
-                                        part.points[static_cast<std::size_t>(ids[2])],
-                                        part.points[static_cast<std::size_t>(ids[3])]);
-      }
-    }
+    estimate.region = row + 1 < table.rows() ? static_cast<int>(row) : -1;
+    estimate.volume = table(row, 0);
     if (estimate.volume > 0.0)
     {
       Eigen::VectorXd slope(count);
       for (Eigen::Index k = 0; k < count; ++k)
       {
-        slope[k] = slopes[static_cast<std::size_t>(k)](whole ? most + 1 : region, 0);
+        slope[k] = slopes[static_cast<std::size_t>(k)](row, 0);
       }
-      const double asAWhole = p.surfaceDeviation * AreaOf(part, whole ? -1 : region);
+      const double asAWhole = p.surfaceDeviation * AreaOf(mesh, estimate.region);
       estimate.volumeDeviation = std::sqrt(slope.dot(covariance * slope) + asAWhole * asAWhole);
       result.regions.push_back(estimate);
     }

@@ -16,7 +16,12 @@ namespace bone
 {
 namespace
 {
-constexpr std::size_t chunk = 1000; // hypotheses of one sequence of random numbers
+constexpr std::size_t  chunk = 1000;     // hypotheses of one sequence of random numbers
+constexpr std::size_t  refined = 300;    // of the best hypotheses
+constexpr std::size_t  kept = 16;        // candidates that are returned
+constexpr double       coarseSize = 8.0; // voxels of the first comparison, mm
+constexpr double       fineSize = 4.0;   // of the last one
+constexpr Eigen::Index modesVaried = 5;  // of shape, at last
 
 double
 Uniform(std::mt19937_64 & random)
@@ -74,33 +79,33 @@ Distinct(std::vector<VolumeCandidate> candidates,
          std::size_t                  most)
 {
   SortByScore(candidates);
-  std::vector<VolumeCandidate> kept;
+  std::vector<VolumeCandidate> best;
   for (const VolumeCandidate & candidate : candidates)
   {
-    if (kept.size() == most)
+    if (best.size() == most)
     {
       break;
     }
-    const bool isNew = std::none_of(kept.begin(), kept.end(), [&](const VolumeCandidate & other) {
+    const bool isNew = std::none_of(best.begin(), best.end(), [&](const VolumeCandidate & other) {
       return DistanceOf(candidate, other, points) < distance;
     });
     if (isNew)
     {
-      kept.push_back(candidate);
+      best.push_back(candidate);
     }
   }
-  return kept;
+  return best;
 }
 
 std::vector<VolumeCandidate>
-Hypothesize(const FeatureCorrelation &     map,
-            Eigen::Index                   leading,
-            const Vector3 &                centre,
-            const VolumeSearchParameters & p,
-            const Execution &              execution)
+Hypothesize(const FeatureCorrelation &    map,
+            Eigen::Index                  leading,
+            const Vector3 &               centre,
+            const AtlasVolumeParameters & p,
+            const Execution &             execution)
 {
-  const auto        chunks = (static_cast<std::size_t>(p.hypotheses) + chunk - 1) / chunk;
-  const std::size_t best = std::max<std::size_t>(10, 20 * static_cast<std::size_t>(p.refined) / chunks);
+  const auto                                chunks = (static_cast<std::size_t>(p.hypotheses) + chunk - 1) / chunk;
+  const std::size_t                         best = std::max<std::size_t>(10, 20 * refined / chunks);
   std::vector<std::vector<VolumeCandidate>> found(chunks);
   execution.For(chunks, [&](std::size_t c) {
     std::mt19937_64 random(static_cast<std::uint64_t>(p.seed) * 1000003U + c);
@@ -139,15 +144,15 @@ Hypothesize(const FeatureCorrelation &     map,
 } // namespace
 
 std::vector<VolumeCandidate>
-SearchVolume(const DeformableModel &        model,
-             const VolumeView &             ct,
-             const VolumeSearchParameters & p,
-             const Execution &              execution)
+SearchVolume(const DeformableModel &       model,
+             const VolumeView &            ct,
+             const AtlasVolumeParameters & p,
+             const Execution &             execution)
 {
   const std::vector<Vector3> & points = model.mean.points;
   const Vector3                centre =
     std::accumulate(points.begin(), points.end(), Vector3(Vector3::Zero())) / static_cast<double>(points.size());
-  const FeatureCorrelation coarse(model, ct, p.coarse, p.softTissue, 500, p.modes, execution.Part(0.0, 0.2));
+  const FeatureCorrelation coarse(model, ct, coarseSize, p.softTissue, 500, modesVaried, execution.Part(0.0, 0.2));
   if (coarse.ImageEdges().empty() || coarse.ModelEdges().empty())
   {
     return {};
@@ -168,13 +173,13 @@ SearchVolume(const DeformableModel &        model,
                                     [&](const VolumeCandidate & c) { return c.share < p.leastShare; }),
                      candidates.end());
   };
-  candidates = Distinct(std::move(candidates), points, p.coarse, static_cast<std::size_t>(p.refined));
+  candidates = Distinct(std::move(candidates), points, coarseSize, refined);
   refine(coarse, 1, 15);
-  candidates = Distinct(std::move(candidates), points, p.coarse, static_cast<std::size_t>(p.refined) / 5);
-  refine(coarse, std::min(p.modes, 3), 15);
-  const FeatureCorrelation fine(model, ct, p.fine, p.softTissue, 1500, p.modes, execution.Part(0.7, 0.8));
-  candidates = Distinct(std::move(candidates), points, p.coarse, 2 * static_cast<std::size_t>(p.kept));
-  refine(fine, p.modes, 20);
-  return Distinct(std::move(candidates), points, p.coarse, static_cast<std::size_t>(p.kept));
+  candidates = Distinct(std::move(candidates), points, coarseSize, refined / 5);
+  refine(coarse, 3, 15);
+  const FeatureCorrelation fine(model, ct, fineSize, p.softTissue, 1500, modesVaried, execution.Part(0.7, 0.8));
+  candidates = Distinct(std::move(candidates), points, coarseSize, 2 * kept);
+  refine(fine, modesVaried, 20);
+  return Distinct(std::move(candidates), points, coarseSize, kept);
 }
 } // namespace bone
