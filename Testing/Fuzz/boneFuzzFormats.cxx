@@ -39,6 +39,9 @@ using Mesh = DensityMesh<double>;
 /** Refines a pose, with few pixels. */
 const std::string Register = "register rigid --search 0 0 --pixels 32 --no-collimator ";
 
+/** Finds the bone of an atlas of three subjects, with few trials. */
+const std::string FewHypotheses = " --hypotheses 2000 --smooth-modes 0 ";
+
 std::string
 Beside(const std::string & path, const char * name)
 {
@@ -312,7 +315,9 @@ ImageFormats()
       { "info ct.nii.gz",
         "contours ct.nii.gz --labels labels.nii.gz --slice-step 6 -o out/contours.vtp -o out/contours.nii.gz",
         "voxels model_L2.vtu --like ct.nii.gz -o out/voxels.nrrd",
-        "build ct.nii.gz --labels labels.nii.gz --tetrahedra 500 --degree 1 --levels 0.5 -o out/build" },
+        "build ct.nii.gz --labels labels.nii.gz --tetrahedra 500 --degree 1 --levels 0.5 -o out/build",
+        "label ct.nii.gz --atlas atlas.h5" + FewHypotheses + "-o out/labels.nii.gz",
+        "evaluate surface.ply atlas.h5 --ct ct.nii.gz -o out/evaluation.json" },
       true,
       compressed,
       SameImage },
@@ -461,6 +466,9 @@ ShapeFormats()
                "profile model_L1.vtu --from 0 17 17 --to 34 17 17 --points 20 -o out/profile.csv",
                "calibrate model_L1.vtu --line 0.001 0.1 --to ash -o out/ash.vtu",
                "fit ct.mha model_L1.vtu --degree 1 -o out/fit.vtu",
+               "measure model_L1.vtu --landmarks landmarks.mrk.json --ball 17 17 17 5 -o out/measures.json",
+               "plan model_L1.vtu --resection 17 17 17 0 0 1 --path 17 17 30 17 17 24 --radius 2 -o out/plan.json",
+               "evaluate model_L1.vtu atlas.h5 -o out/evaluation.json",
                Register + "model_L1.vtu --xray radiograph.mha --geometry matrix.json -o out/pose" },
              false,
              Payload::Base64,
@@ -521,6 +529,8 @@ OtherFormats()
       { "info atlas.h5",
         "sample atlas.h5 --shape 1=1 -o out/sample.vtu",
         "sample atlas.h5 --random 7 -o out/sample.vtu",
+        "evaluate subject.vtu atlas.h5 -o out/evaluation.json",
+        "register volume atlas.h5 ct.mha" + FewHypotheses + "-o out/bone",
         "register deform atlas.h5 --xray radiograph.mha radiograph.mha --geometry view.json --search 0 0 --pixels 32 "
         "--search-pixels 32 --iterations 1 --smooth-modes 0 --no-intensities --no-collimator -o out/bone" },
       false,
@@ -532,7 +542,9 @@ OtherFormats()
       { Register + "model_L2.vtu --xray radiograph.mha --geometry matrix.json --initial pose.tfm -o out/pose" } },
     { "landmarks.mrk.json",
       UseLandmarks,
-      { Register + "model_L2.vtu --xray radiograph.mha --geometry matrix.json --landmarks landmarks.mrk.json "
+      { "measure model_L2.vtu --landmarks landmarks.mrk.json -o out/measures.json --write-landmarks "
+        "out/placed.mrk.json",
+        Register + "model_L2.vtu --xray radiograph.mha --geometry matrix.json --landmarks landmarks.mrk.json "
                    "--xray-landmarks points.json -o out/pose" } },
     { "points.json",
       UseImageLandmarks,

@@ -110,9 +110,10 @@ DeformableModel::DeformableModel(const StatisticalModelContent &        atlas,
   {
     if (parameters.smoothDeviation == 0.0 && atlas.shapeScores.rows() < 4)
     {
-      throw std::invalid_argument("The atlas has " + std::to_string(atlas.shapeScores.rows()) +
-                                  " subjects, and what its modes leave of a bone is estimated from four or more: set "
-                                  "SmoothDeviation, or SmoothModes to 0.");
+      throw std::invalid_argument(
+        "The atlas has " + std::to_string(atlas.shapeScores.rows()) +
+        " subjects, and what its modes leave of a bone is estimated from four or more: give no smooth "
+        "modes (0), or their deviation.");
     }
     const double length = parameters.smoothLength > 0.0 ? parameters.smoothLength : ExtentOf(mean.points) / 12.0;
     smooth = parameters.smoothDeviation > 0.0

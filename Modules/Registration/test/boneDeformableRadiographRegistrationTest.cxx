@@ -395,7 +395,7 @@ TEST(DeformableRadiographRegistration, RefusesWhatItCannotUse)
   three.shapeScores = three.shapeScores.topRows(3).eval();
   few->SetModel(Model(std::move(three)));
   few->SetSmoothModes(9);
-  EXPECT_THAT(ErrorOf(few), HasSubstr("set SmoothDeviation"));
+  EXPECT_THAT(ErrorOf(few), HasSubstr("give no smooth modes (0)"));
 
   // Density times mm, not attenuation.
   auto unit = MakeRegistration();
