@@ -10,7 +10,7 @@
 # composition uses foundation, stages and compositions that stand before it.
 set(BONETK_FOUNDATION Core IO Phantom)
 set(BONETK_STAGES Contour Tiling Quality Density Simplification Radiograph Atlas)
-set(BONETK_COMPOSITIONS Model Evaluation Registration Measurement)
+set(BONETK_COMPOSITIONS Model Evaluation Registration Measurement Export)
 set(BONETK_MODULES_ALL ${BONETK_FOUNDATION} ${BONETK_STAGES} ${BONETK_COMPOSITIONS})
 set(BONETK_STAGES_MAY_USE Core)
 set(bonetk_include_dir ${CMAKE_INSTALL_INCLUDEDIR}/BoneTK)

@@ -63,6 +63,8 @@ AddMeasureCommand(CLI::App & app, Action & action);
 void
 AddPlanCommand(CLI::App & app, Action & action);
 void
+AddExportCommand(CLI::App & app, Action & action);
+void
 AddValidateCommand(CLI::App & app, Action & action);
 void
 AddInfoCommand(CLI::App & app, Action & action);

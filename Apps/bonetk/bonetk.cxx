@@ -197,6 +197,7 @@ main(int argc, char ** argv)
   bone::AddEvaluateCommand(app, action);
   bone::AddMeasureCommand(app, action);
   bone::AddPlanCommand(app, action);
+  bone::AddExportCommand(app, action);
   bone::AddValidateCommand(app, action);
   bone::AddInfoCommand(app, action);
   AddSharedOptions(app, session);

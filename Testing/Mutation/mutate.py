@@ -39,7 +39,8 @@ TESTS = {"Core": ["Core", "Tiling", "Quality", "Density", "Simplification", "Fil
          "Atlas": ["Atlas", "Filter"],
          "Phantom": ["Phantom", "Filter", "Integration"],
          "Evaluation": ["Evaluation", "Integration"],
-         "Measurement": ["Measurement"]}
+         "Measurement": ["Measurement"],
+         "Export": ["Export"]}
 
 # A fault may ask for memory without end.
 MEMORY = 8 << 30

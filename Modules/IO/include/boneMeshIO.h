@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+class vtkUnstructuredGrid;
+
 namespace bone
 {
 /** \defgroup MeshIO Density meshes in VTK's unstructured-grid format (.vtu)
@@ -28,6 +30,10 @@ ReadMeshArrays(const std::string & path);
 /** Writes the whole file or none. The name must end in .vtu. */
 void
 WriteMeshArrays(const MeshArrays & mesh, const std::string & path);
+
+/** Any grid, as WriteMeshArrays. */
+void
+WriteUnstructuredGrid(vtkUnstructuredGrid * grid, const std::string & path);
 
 DensityMesh<double>::Pointer
 ReadDensityMesh(const std::string & path);

@@ -130,11 +130,16 @@ void
 WriteMeshArrays(const MeshArrays & mesh, const std::string & path)
 {
   RequireExtension(path, { ".vtu" });
-  NamingFile(path, [&] {
-    AtomicFile file(path);
-    WriteVtuFile(ToVtkUnstructuredGrid(mesh), file);
-    file.Commit();
-  });
+  NamingFile(path, [&] { WriteUnstructuredGrid(ToVtkUnstructuredGrid(mesh), path); });
+}
+
+void
+WriteUnstructuredGrid(vtkUnstructuredGrid * grid, const std::string & path)
+{
+  RequireExtension(path, { ".vtu" });
+  AtomicFile file(path);
+  WriteVtuFile(grid, file);
+  file.Commit();
 }
 
 DensityMesh<double>::Pointer
