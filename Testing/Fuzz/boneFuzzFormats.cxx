@@ -469,6 +469,7 @@ ShapeFormats()
                "measure model_L1.vtu --landmarks landmarks.mrk.json --ball 17 17 17 5 -o out/measures.json",
                "plan model_L1.vtu --resection 17 17 17 0 0 1 --path 17 17 30 17 17 24 --radius 2 -o out/plan.json",
                "evaluate model_L1.vtu atlas.h5 -o out/evaluation.json",
+               "export model_L1.vtu --format gmsh --law keyak1998 --line 0 0.001 -o out/mesh.msh",
                Register + "model_L1.vtu --xray radiograph.mha --geometry matrix.json -o out/pose" },
              false,
              Payload::Base64,

@@ -37,8 +37,8 @@ HoldsModulusField(FiniteElementFormat format, ModulusField field);
  * Lengths in mm, forces in N, moduli in MPa, mass density in t/mm^3; nodes and elements are numbered from 1 (in VTK
  * from 0) in the model's order. Sets have their own names in every format. In gmsh the node sets are groups of points,
  * EXTERIOR one of triangles, and an element belongs to the groups of its region and its material. With moduli by node
- * Abaqus and CalculiX read them as the initial temperature, on which the only material depends, without any expansion;
- * with moduli by cell FEBio reads them from a map.
+ * Abaqus and CalculiX read them in GPa as the initial temperature, on which the only material depends, without any
+ * expansion; with moduli by cell FEBio reads them from a map.
  *
  * Throws IOError where the file cannot be written or has another extension, and std::invalid_argument where the format
  * cannot hold such moduli. */

@@ -35,7 +35,10 @@ AddBinnedMaterials(const FiniteElementModel & model, FiniteElementText & text)
   }
 }
 
-/** One material whose modulus in MPa is its temperature; its mass density goes with the modulus by bin. */
+/** A modulus of 1000 MPa is a temperature of 1: CalculiX keeps six digits after the point and none above 2147. */
+constexpr double TemperaturePerModulus = 1e-3;
+
+/** One material whose modulus is its temperature; its mass density goes with the modulus by bin. */
 void
 AddNodalMaterial(const FiniteElementModel & model, FiniteElementText & text)
 {
@@ -44,17 +47,17 @@ AddNodalMaterial(const FiniteElementModel & model, FiniteElementText & text)
   text << "*MATERIAL, NAME=BONE\n*ELASTIC\n";
   for (const double modulus : { *softest, high })
   {
-    text << modulus << ", " << model.parameters.poissonRatio << ", " << modulus << '\n';
+    text << modulus << ", " << model.parameters.poissonRatio << ", " << TemperaturePerModulus * modulus << '\n';
   }
   text << "*DENSITY\n";
   for (const FiniteElementMaterial & material : model.materials)
   {
-    text << material.massDensity << ", " << material.modulus << '\n';
+    text << material.massDensity << ", " << TemperaturePerModulus * material.modulus << '\n';
   }
   text << "*SOLID SECTION, ELSET=BONE, MATERIAL=BONE\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\n";
   for (std::size_t n = 0; n < model.nodeModulus.size(); ++n)
   {
-    text << n + 1 << ", " << model.nodeModulus[n] << '\n';
+    text << n + 1 << ", " << TemperaturePerModulus * model.nodeModulus[n] << '\n';
   }
 }
 } // namespace
