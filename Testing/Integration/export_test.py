@@ -229,6 +229,19 @@ class Files(TestCase):
         data = {int(e.get("lid")): float(e.text) for e in root.find("MeshData/ElementData")}
         self.assertEqual(sorted(data), list(range(1, len(cells) + 1)))
 
+    def test_boundary_on_a_finer_model(self):
+        self.export("calculix", "a.inp")
+        straight = meshio.read("a.inp").points
+        out, _ = self.export("calculix", "a.inp", "--surface", "m/model_L1.vtu")
+        self.assertIn("nodes of the boundary lie on m/model_L1.vtu", out)
+        mesh = meshio.read("a.inp")
+        moved = numpy.flatnonzero(numpy.abs(mesh.points - straight).max(axis=1) > 1e-9)
+        self.assertGreater(len(moved), 100)
+        self.assertTrue(set(moved) <= set(mesh.point_sets["BOUNDARY"]))
+        self.assertFalse(set(moved) & set(mesh.point_sets["CUT_1"]))
+        if calculix.find_solver():
+            calculix.solve("a.inp", "*BOUNDARY\nEND_LOW_Z, 1, 3\n*CLOAD\nLM_femoral_head, 3, -100")
+
     def test_what_is_said(self):
         out, err = self.export("calculix", "a.inp", "--order", 1)
         self.assertIn("J. H. Keyak", out)
@@ -247,6 +260,8 @@ class Files(TestCase):
         self.refuse_usage(*model, "--law", "keyak1998", *line, "-o", "a.msh", says=".inp")
         self.refuse_usage(*model, "--law", "keyak1998", *line, "--modulus", "cells", "-o", "a.inp", says="nodes")
         self.refuse_usage(*model, "--law", "keyak1998", *line, "--level", 2, "-o", "a.inp", says="--level")
+        self.refuse_usage(*model, "--law", "keyak1998", *line, "--order", 1, "--surface", "m/model_L1.vtu", "-o", "a.inp",
+                          says="--surface")
         self.refuse_usage("export", "--law", "keyak1998", "-o", "a.inp", says="model")
         self.refuse_usage(*model, "--law", "keyak1998", *line, "--poisson", 0.5, "-o", "a.inp", says="--poisson")
         self.refuse_usage("export", "m/model.hierarchy.json", "--level", 9, "--format", "febio", "--law", "keyak1998", *line,

@@ -6,6 +6,7 @@
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
 
+#include "boneCurvedBoundary.h"
 #include "boneDensityCalibration.h"
 #include "boneFileName.h"
 #include "boneFiniteElementIO.h"
@@ -27,6 +28,7 @@ struct ExportOptions
   std::string             law;
   std::vector<double>     line;
   std::string             landmarks;
+  std::string             surface;
   FiniteElementParameters parameters;
   std::string             output;
 };
@@ -80,6 +82,21 @@ CalibrateModel(const ExportOptions & options, const ElasticityLaw & law, MeshArr
     throw UsageError(options.model + " holds " + DensityQuantityName(model.quantity) + ", and the law needs " +
                      DensityQuantityName(law.density) + ": use bonetk calibrate first, or --line INTERCEPT SLOPE");
   }
+}
+
+/** The nodes on the edges of the boundary onto the surface of a file, or of another model. */
+void
+CurveModel(const ExportOptions & options, const MeshArrays & mesh, FiniteElementModel & model, Session & session)
+{
+  std::vector<IdType>   ids;
+  const TriangleSurface surface = HasExtension(options.surface, ".vtu")
+                                    ? ExteriorSurface(ReadMeshArrays(options.surface), ids)
+                                    : ReadTriangleSurface(options.surface);
+  const CurvedBoundary  curved = CurveBoundary(mesh, TriangleDistance(surface.points, surface.triangles), model);
+  std::ostringstream    text;
+  text << std::setprecision(3) << curved.curved << " nodes of the boundary lie on " << options.surface << ", moved by "
+       << curved.largestMove << " mm at the most; " << curved.refused << " stay on straight edges for their elements\n";
+  session.Print(text.str());
 }
 
 void
@@ -141,6 +158,10 @@ RunExport(const ExportOptions & options, Session & session)
   const auto          format = ParseChoice<FiniteElementFormat>(options.format);
   const auto          field = options.parameters.modulusField;
   const ElasticityLaw law = FindElasticityLaw(options.law);
+  if (!options.surface.empty() && options.parameters.order == 1)
+  {
+    throw UsageError("--surface needs --order 2: elements of four nodes have straight edges");
+  }
   VerifyOutputs({ { options.output, { FiniteElementExtension(format) } } });
   if (!HoldsModulusField(format, field))
   {
@@ -149,9 +170,13 @@ RunExport(const ExportOptions & options, Session & session)
   }
   MeshArrays mesh = ReadLevel(options);
   CalibrateModel(options, law, mesh);
-  const auto landmarks = options.landmarks.empty() ? std::vector<Landmark>() : ReadLandmarks(options.landmarks);
-  const FiniteElementModel model = MakeFiniteElements(mesh, law, options.parameters, landmarks);
+  const auto         landmarks = options.landmarks.empty() ? std::vector<Landmark>() : ReadLandmarks(options.landmarks);
+  FiniteElementModel model = MakeFiniteElements(mesh, law, options.parameters, landmarks);
   Report(model, session);
+  if (!options.surface.empty())
+  {
+    CurveModel(options, mesh, model, session);
+  }
   WriteFiniteElements(model, format, options.output);
 }
 } // namespace
@@ -181,6 +206,11 @@ AddExportCommand(CLI::App & app, Action & action)
     ->expected(2);
   command->add_option(
     "--landmarks", options->landmarks, "Landmarks (.mrk.json), each a node set LM_NAME of the next node");
+  command->add_option(
+    "--surface",
+    options->surface,
+    "Closed surface (.stl, .ply, .vtp), or finer model (.vtu), that the nodes on the edges of the boundary "
+    "are moved onto");
   AddParameterOptions(command, options->parameters);
   command->add_option("-o,--output", options->output, "File to write");
   command->callback([options, &action] { action = [options](Session & session) { RunExport(*options, session); }; });
