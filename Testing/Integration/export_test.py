@@ -11,7 +11,7 @@ import xml.etree.ElementTree
 import numpy
 
 import calculix
-from bonetk_testing import TestCase, bonetk, main, write_json
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, run, write_json
 
 try:
     import meshio
@@ -241,6 +241,15 @@ class Files(TestCase):
         self.assertFalse(set(moved) & set(mesh.point_sets["CUT_1"]))
         if calculix.find_solver():
             calculix.solve("a.inp", "*BOUNDARY\nEND_LOW_Z, 1, 3\n*CLOAD\nLM_femoral_head, 3, -100")
+
+    @unittest.skipUnless(EXAMPLES and os.path.exists(EXAMPLES + "/boneFiniteElementExample"), "the examples are not built")
+    def test_example(self):
+        code, out, err = run(EXAMPLES + "/boneFiniteElementExample", "m/model_L2.vtu", 0.0, 0.0008, "a.inp")
+        self.assertEqual(code, 0, err)
+        self.assertIn("J. H. Keyak", out)
+        self.succeed("export", "m/model_L2.vtu", "--format", "calculix", "--law", "keyak1998", "--line", 0.0, 0.0008, "-o", "b.inp")
+        with open("a.inp") as a, open("b.inp") as b:
+            self.assertEqual(a.read(), b.read())
 
     def test_what_is_said(self):
         out, err = self.export("calculix", "a.inp", "--order", 1)
