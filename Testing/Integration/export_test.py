@@ -224,10 +224,30 @@ class Files(TestCase):
             self.check_sets(cells, sets, {name: ids for name, ids in sets.items() if name[:4] in ("MAT_", "REGI")})
             faces = [[int(x) - 1 for x in face.text.split(",")] for face in mesh.find("Surface")]
             self.assertEqual(sorted({n for face in faces for n in face}), sorted(sets["BOUNDARY"]))
+            for i in range(3):
+                a, b, middle = (points[[face[k] for face in faces]] for k in (i, (i + 1) % 3, 3 + i))
+                self.assertLess(numpy.abs(0.5 * (a + b) - middle).max(), 1e-6)
             volume = sum(points[a] @ numpy.cross(points[b], points[c]) for a, b, c, *_ in faces) / 6
             self.assertGreater(volume, 0)
         data = {int(e.get("lid")): float(e.text) for e in root.find("MeshData/ElementData")}
         self.assertEqual(sorted(data), list(range(1, len(cells) + 1)))
+
+    def test_tables_of_moduli_by_node(self):
+        """Young's modulus and mass density go with one temperature, GPa, over the same range."""
+        self.export("calculix", "a.inp", "--modulus", "nodes")
+        tables, key = {}, None
+        with open("a.inp") as file:
+            for line in file:
+                if line.startswith("*"):
+                    key = line.strip()
+                elif key in ("*ELASTIC", "*DENSITY", "*INITIAL CONDITIONS, TYPE=TEMPERATURE"):
+                    tables.setdefault(key, []).append([float(x) for x in line.split(",")])
+        elastic, density, nodes = (numpy.array(tables[key]) for key in tables)
+        self.assertTrue(numpy.allclose(elastic[:, 0], 1000 * elastic[:, 2]))
+        self.assertLessEqual(elastic[0, 2], nodes[:, 1].min() + 1e-9)
+        self.assertGreaterEqual(elastic[-1, 2], nodes[:, 1].max() - 1e-9)
+        self.assertTrue((numpy.diff(density, axis=0) > 0)[:, 1].all())
+        self.assertTrue(1e-4 < density[0, 1] < density[-1, 1] < 50)
 
     def test_boundary_on_a_finer_model(self):
         self.export("calculix", "a.inp")

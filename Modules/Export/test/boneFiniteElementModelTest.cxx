@@ -329,16 +329,69 @@ TEST(FiniteElementModel, SetsAreWhatTheirNamesSay)
       model.nodes.begin(), model.nodes.end(), [plane](const Vector3 & x) { return std::abs(x.z() - plane) < 1e-9; });
     EXPECT_EQ(static_cast<long>(ids.size()), inPlane);
   }
-  for (const IdType n : SetOf(model.nodeSets, "END_HIGH_Z").ids)
-  {
-    EXPECT_GE(model.nodes[static_cast<std::size_t>(n)].z(), high - 0.03 * (high - low));
-  }
+  const auto within = [&](double from, double to) {
+    std::vector<IdType> ids;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    {
+      if (model.nodes[n].z() >= from && model.nodes[n].z() <= to)
+      {
+        ids.push_back(static_cast<IdType>(n));
+      }
+    }
+    return ids;
+  };
+  EXPECT_EQ(SetOf(model.nodeSets, "END_HIGH_Z").ids, within(high - 0.03 * (high - low), high));
+  EXPECT_EQ(SetOf(model.nodeSets, "END_LOW_Z").ids, within(low, low + 0.03 * (high - low)));
   std::size_t elements = 0;
   for (const FiniteElementSet & set : model.elementSets)
   {
     elements += set.name.rfind("MAT_", 0) == 0 ? set.ids.size() : 0;
   }
   EXPECT_EQ(elements, model.elements.size());
+}
+
+TEST(FiniteElementModel, TheEndSetsGoByAShareOfTheExtent)
+{
+  // 40 layers: one within 3 % of either end, beside the end itself.
+  test::TubeShape shape;
+  shape.slices = 41;
+  MeshArrays mesh = test::MakeTube(shape);
+  test::SetDensity(mesh, 0, [](const Vector3 &) { return 0.5; });
+  mesh.quantity = DensityQuantity::ApparentGramPerCubicCentimetre;
+  const auto model = MakeFiniteElements(mesh, PowerLaw(1000.0, 1.0));
+  EXPECT_GT(SetOf(model.nodeSets, "END_HIGH_Z").ids.size(), SetOf(model.nodeSets, "CUT_1").ids.size());
+}
+
+TEST(FiniteElementModel, TheLargestCutIsTheFirst)
+{
+  for (const double taper : { -0.01, 0.01 })
+  {
+    MeshArrays mesh = Rod(0, [](const Vector3 &) { return 0.5; });
+    for (Vector3 & x : mesh.points)
+    {
+      x.head<2>() *= 1.0 + taper * x.z();
+    }
+    const auto model = MakeFiniteElements(mesh, PowerLaw(1000.0, 1.0));
+    const auto heightOf = [&](const char * name) {
+      return model.nodes[static_cast<std::size_t>(SetOf(model.nodeSets, name).ids.front())].z();
+    };
+    EXPECT_EQ(heightOf("CUT_1") > heightOf("CUT_2"), taper > 0.0);
+  }
+}
+
+TEST(FiniteElementModel, SaysWhatShareOfTheVolumeLiesOutsideTheLawsRange)
+{
+  const MeshArrays mesh = Rod(0, [](const Vector3 & x) { return x.z() < 8.0 ? 0.05 : x.z() > 14.0 ? 0.95 : 0.5; });
+  const auto       model = MakeFiniteElements(mesh, PowerLaw(1000.0, 1.0)); // for 0.1 to 0.9
+  double           outside = 0.0, volume = 0.0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    outside += mesh.coefficients[t] != 0.5 ? VolumeOf(mesh, t) : 0.0;
+    volume += VolumeOf(mesh, t);
+  }
+  EXPECT_GT(outside, 0.3 * volume);
+  EXPECT_LT(outside, 0.9 * volume);
+  EXPECT_NEAR(model.shareOutside, outside / volume, 1e-12);
 }
 
 TEST(FiniteElementModel, RefusesWhatGivesNoModelAndSaysWhy)
