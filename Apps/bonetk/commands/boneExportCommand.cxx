@@ -188,7 +188,7 @@ AddExportCommand(CLI::App & app, Action & action)
   auto * command = app.add_subcommand("export", "A finite-element mesh with materials and sets, for a solver");
   command->add_option("model", options->model, "Model with a density (.vtu, .hierarchy.json)");
   command->add_option("--level", options->level, "Level of a hierarchy, 1 the finest; default 1")
-    ->check(CLI::Range(1, 1000));
+    ->check(CLI::Range(1, 1000).description(""));
   command->add_option("--format", options->format, "abaqus, calculix (.inp), febio (.feb), gmsh (.msh) or vtk (.vtu)")
     ->check(CLI::IsMember({ "abaqus", "calculix", "febio", "gmsh", "vtk" }).description(""));
   std::vector<std::string> names{ "list" };
