@@ -229,8 +229,15 @@ class Files(TestCase):
                 self.assertLess(numpy.abs(0.5 * (a + b) - middle).max(), 1e-6)
             volume = sum(points[a] @ numpy.cross(points[b], points[c]) for a, b, c, *_ in faces) / 6
             self.assertGreater(volume, 0)
-        data = {int(e.get("lid")): float(e.text) for e in root.find("MeshData/ElementData")}
-        self.assertEqual(sorted(data), list(range(1, len(cells) + 1)))
+        maps = {data.get("name"): {int(e.get("lid")): float(e.text) for e in data} for data in root.find("MeshData")}
+        material = root.find("Material/material")
+        self.assertEqual({material.find("E").text, material.find("density").text}, set(maps))
+        self.export("vtk", "a.vtu")
+        grid = meshio.read("a.vtu")
+        for name, values in maps.items():
+            self.assertEqual(sorted(values), list(range(1, len(cells) + 1)))
+            known = grid.cell_data[name][0]
+            self.assertTrue(numpy.allclose([values[i + 1] for i in range(len(cells))], known, rtol=1e-8, atol=0), name)
 
     def test_tables_of_moduli_by_node(self):
         """Young's modulus and mass density go with one temperature, GPa, over the same range."""

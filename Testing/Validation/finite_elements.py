@@ -240,10 +240,6 @@ traction for all meshes. Stiffness: force by mean displacement under it. C3D10 h
 work going on.
 
 {levels}
-The tibia's level 3 is too stiff along its whole shaft, with the law at the elements' mean densities too (+9.1 %): its cells reach
-across the thin cortex. Its polynomials resolved further (each cell in eight, with the moduli of the parts) are 17 % softer than level 1:
-at that level the density of the cortex is not known well enough for either. Levels 1 and 2 are what a solver should be given.
-
 ## Bins and nodes
 
 Level 2 of phantom femur 0, C3D10: what binning costs, beside moduli interpolated between nodes.

@@ -42,7 +42,7 @@ ReadLevel(const ExportOptions & options)
     {
       throw UsageError("--level needs a hierarchy (.hierarchy.json): a mesh has one level");
     }
-    return ReadMeshArrays(options.model);
+    return ReadDensityMesh(options.model)->GetArrays();
   }
   const auto   hierarchy = ReadHierarchy(options.model);
   const auto & levels = hierarchy->GetLevels();
@@ -72,8 +72,6 @@ CalibrateModel(const ExportOptions & options, const ElasticityLaw & law, MeshArr
     line.to = law.density;
     line.intercept = options.line[0];
     line.slope = options.line[1];
-    line.low = -1e6;
-    line.high = 1e6;
     ConvertDensity(model, line);
   }
   else if (model.HasDensity() && model.quantity != DensityQuantity::AshGramPerCubicCentimetre &&
@@ -86,13 +84,13 @@ CalibrateModel(const ExportOptions & options, const ElasticityLaw & law, MeshArr
 
 /** The nodes on the edges of the boundary onto the surface of a file, or of another model. */
 void
-CurveModel(const ExportOptions & options, const MeshArrays & mesh, FiniteElementModel & model, Session & session)
+CurveModel(const ExportOptions & options, FiniteElementModel & model, Session & session)
 {
   std::vector<IdType>   ids;
   const TriangleSurface surface = HasExtension(options.surface, ".vtu")
                                     ? ExteriorSurface(ReadMeshArrays(options.surface), ids)
                                     : ReadTriangleSurface(options.surface);
-  const CurvedBoundary  curved = CurveBoundary(mesh, TriangleDistance(surface.points, surface.triangles), model);
+  const CurvedBoundary  curved = CurveBoundary(TriangleDistance(surface.points, surface.triangles), model);
   std::ostringstream    text;
   text << std::setprecision(3) << curved.curved << " nodes of the boundary lie on " << options.surface << ", moved by "
        << curved.largestMove << " mm at the most; " << curved.refused << " stay on straight edges for their elements\n";
@@ -175,7 +173,7 @@ RunExport(const ExportOptions & options, Session & session)
   Report(model, session);
   if (!options.surface.empty())
   {
-    CurveModel(options, mesh, model, session);
+    CurveModel(options, model, session);
   }
   WriteFiniteElements(model, format, options.output);
 }
@@ -202,7 +200,7 @@ AddExportCommand(CLI::App & app, Action & action)
   command
     ->add_option("--line",
                  options->line,
-                 "Intercept and slope of the law's density (g/cm^3) by the model's, where it is not calibrated yet")
+                 "Intercept and slope of the law's density (g/cm^3) by HU, for a model that is not calibrated")
     ->expected(2);
   command->add_option(
     "--landmarks", options->landmarks, "Landmarks (.mrk.json), each a node set LM_NAME of the next node");

@@ -24,12 +24,12 @@ struct CurvedBoundary
  *
  * Edges of flat cuts stay straight, their rims too. The Jacobian determinant of an element with ten nodes is a
  * polynomial of degree 3; where one of its Bernstein coefficients, which bound it, would fall below LeastCurvedJacobian
- * of the straight element's, the node of it that was moved farthest goes back, until none does. `mesh` is what the
- * model was made from; the moduli stay those of its straight cells.
+ * of the straight element's, the node of it that was moved farthest goes back, until none does. The moduli
+ * stay those of the straight elements.
  *
  * Throws std::invalid_argument where the elements have four nodes. */
 CurvedBoundary
-CurveBoundary(const MeshArrays & mesh, const TriangleDistance & surface, FiniteElementModel & model);
+CurveBoundary(const TriangleDistance & surface, FiniteElementModel & model);
 
 /** The least Bernstein coefficient of the Jacobian determinant of an element with ten nodes, over the determinant of
  * the element with its corners and straight edges: 1 where its edges are straight. */

@@ -75,9 +75,19 @@ constexpr std::array<std::array<int, 3>, 4> FiniteElementFaceCorners = {
   { { { 1, 2, 3 } }, { { 0, 3, 2 } }, { { 0, 1, 3 } }, { { 0, 2, 1 } } }
 };
 
+/** The corners of an element's edges, in the order of the nodes on them, which follow the corners. */
+constexpr std::array<std::array<int, 2>, 6> FiniteElementEdges = {
+  { { { 0, 1 } }, { { 1, 2 } }, { { 2, 0 } }, { { 0, 3 } }, { { 1, 3 } }, { { 2, 3 } } }
+};
+
 /** The position among an element's ten nodes of the one on the edge between two corners. */
 int
 FiniteElementEdgeNode(int cornerA, int cornerB);
+
+/** The nodes of an element's face: three corners, seen from outside counter-clockwise, and with ten nodes those on the
+ * edges from each to the next. */
+std::vector<IdType>
+FiniteElementFaceNodes(const FiniteElementModel & model, const FiniteElementFace & face);
 
 /** \brief Elements, materials and sets of a density mesh whose density is ash or apparent density (g/cm^3).
  *
@@ -93,7 +103,7 @@ FiniteElementEdgeNode(int cornerA, int cornerB);
  * underscores for the rest.
  *
  * Throws std::invalid_argument where the mesh holds no density or one of another quantity, a parameter is out of its
- * range, two landmarks' sets have one name, or a landmark lies further than 45 mm from the mesh. */
+ * range, two landmarks' sets have one name, or a landmark lies further than FarthestLandmark from the mesh. */
 FiniteElementModel
 MakeFiniteElements(const MeshArrays &              mesh,
                    const ElasticityLaw &           law,

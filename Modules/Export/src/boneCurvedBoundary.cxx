@@ -3,34 +3,31 @@
  *=========================================================================*/
 #include "boneCurvedBoundary.h"
 
-#include "boneSurfaceComplex.h"
-
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 namespace bone
 {
 namespace
 {
-/** Nodes on edges of the boundary, and whether one of the edge's faces lies on a flat cut. */
-std::map<IdType, bool>
-BoundaryEdgeNodes(const MeshArrays & mesh, const FiniteElementModel & model)
+/** Nodes on edges of the boundary, but for those of flat cuts. */
+std::set<IdType>
+BoundaryEdgeNodes(const FiniteElementModel & model)
 {
-  const SurfaceComplex   complex = FindSurfaces(mesh);
-  std::map<IdType, bool> nodes;
+  std::set<IdType> nodes;
   for (const FiniteElementFace & face : model.exterior)
   {
-    const auto   e = static_cast<std::size_t>(face.element);
-    const auto   opposite = static_cast<std::size_t>(face.opposite);
-    const auto & surface = complex.surfaces[static_cast<std::size_t>(complex.faceSurface[e][opposite])];
-    const auto & corners = FiniteElementFaceCorners[opposite];
-    for (std::size_t i = 0; i < 3; ++i)
+    const auto ids = FiniteElementFaceNodes(model, face);
+    nodes.insert(ids.begin() + 3, ids.end());
+  }
+  for (const FiniteElementSet & set : model.nodeSets)
+  {
+    for (std::size_t i = 0; set.name.rfind("CUT_", 0) == 0 && i < set.ids.size(); ++i)
     {
-      const int place = FiniteElementEdgeNode(corners[i], corners[(i + 1) % 3]);
-      bool &    flat = nodes[model.elements[e][static_cast<std::size_t>(place)]];
-      flat = flat || surface.flat >= 0;
+      nodes.erase(set.ids[i]);
     }
   }
   return nodes;
@@ -97,21 +94,18 @@ LeastRelativeJacobian(const FiniteElementModel & model, std::size_t element)
 }
 
 CurvedBoundary
-CurveBoundary(const MeshArrays & mesh, const TriangleDistance & surface, FiniteElementModel & model)
+CurveBoundary(const TriangleDistance & surface, FiniteElementModel & model)
 {
   if (model.order != 2)
   {
     throw std::invalid_argument("Elements of four nodes have straight edges: a boundary on a surface needs ten.");
   }
   std::map<IdType, Vector3> middles; // of the nodes that are moved
-  for (const auto & [node, flat] : BoundaryEdgeNodes(mesh, model))
+  for (const IdType node : BoundaryEdgeNodes(model))
   {
-    if (!flat)
-    {
-      Vector3 & x = model.nodes[static_cast<std::size_t>(node)];
-      middles[node] = x;
-      x = surface.FindNearest(x).point;
-    }
+    Vector3 & x = model.nodes[static_cast<std::size_t>(node)];
+    middles[node] = x;
+    x = surface.FindNearest(x).point;
   }
   CurvedBoundary result;
   for (bool changed = true; changed;)

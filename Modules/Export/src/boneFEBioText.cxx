@@ -7,16 +7,17 @@ namespace bone
 {
 namespace
 {
-void
-AddMaterial(const std::string &           name,
-            std::size_t                   number,
-            const std::string &           modulus,
-            const FiniteElementMaterial & material,
-            double                        poissonRatio,
-            FiniteElementText &           text)
+/** Density and modulus as they stand in their elements: numbers, or with type="map" the names of maps. */
+struct MaterialText
 {
-  text << "    <material id=\"" << number << "\" name=\"" << name << "\" type=\"isotropic elastic\">\n      <density>"
-       << material.massDensity << "</density>\n      " << modulus << "\n      <v>" << poissonRatio
+  std::string name, density, modulus;
+};
+
+void
+AddMaterial(const MaterialText & material, std::size_t number, double poissonRatio, FiniteElementText & text)
+{
+  text << "    <material id=\"" << number << "\" name=\"" << material.name << "\" type=\"isotropic elastic\">\n      "
+       << material.density << "\n      " << material.modulus << "\n      <v>" << poissonRatio
        << "</v>\n    </material>\n";
 }
 
@@ -44,20 +45,12 @@ AddSurface(const FiniteElementModel & model, FiniteElementText & text)
   text << "    <Surface name=\"EXTERIOR\">\n";
   for (std::size_t f = 0; f < model.exterior.size(); ++f)
   {
-    const FiniteElementFace & face = model.exterior[f];
-    const auto &              element = model.elements[static_cast<std::size_t>(face.element)];
-    const auto &              corners = FiniteElementFaceCorners[static_cast<std::size_t>(face.opposite)];
-    const auto                add = [&](int node, bool first) {
-      text << (first ? "" : ",") << element[static_cast<std::size_t>(node)] + 1;
-    };
     text << "      <" << shape << " id=\"" << f + 1 << "\">";
-    for (std::size_t i = 0; i < 3; ++i)
+    const char * between = "";
+    for (const IdType node : FiniteElementFaceNodes(model, model.exterior[f]))
     {
-      add(corners[i], i == 0);
-    }
-    for (std::size_t i = 0; model.order == 2 && i < 3; ++i)
-    {
-      add(FiniteElementEdgeNode(corners[i], corners[(i + 1) % 3]), false);
+      text << between << node + 1;
+      between = ",";
     }
     text << "</" << shape << ">\n";
   }
@@ -105,20 +98,29 @@ AddMaterials(const FiniteElementModel & model, FiniteElementText & text)
   const double nu = model.parameters.poissonRatio;
   if (model.parameters.modulusField == ModulusField::Cells)
   {
-    FiniteElementMaterial whole;
-    for (const double density : model.massDensity)
-    {
-      whole.massDensity += density / static_cast<double>(model.massDensity.size());
-    }
-    AddMaterial("BONE", 1, "<E type=\"map\">YoungsModulus</E>", whole, nu, text);
+    AddMaterial(
+      { "BONE", "<density type=\"map\">MassDensity</density>", "<E type=\"map\">YoungsModulus</E>" }, 1, nu, text);
     return;
   }
   for (std::size_t m = 0; m < model.materials.size(); ++m)
   {
-    FiniteElementText modulus;
+    FiniteElementText density, modulus;
+    density << "<density>" << model.materials[m].massDensity << "</density>";
     modulus << "<E>" << model.materials[m].modulus << "</E>";
-    AddMaterial("MAT_" + std::to_string(m + 1), m + 1, modulus.GetText(), model.materials[m], nu, text);
+    AddMaterial({ "MAT_" + std::to_string(m + 1), density.GetText(), modulus.GetText() }, m + 1, nu, text);
   }
+}
+
+/** A number for each element of BONE. */
+void
+AddMap(const char * name, const std::vector<double> & values, FiniteElementText & text)
+{
+  text << "    <ElementData name=\"" << name << "\" elem_set=\"BONE\">\n";
+  for (std::size_t e = 0; e < values.size(); ++e)
+  {
+    text << "      <e lid=\"" << e + 1 << "\">" << values[e] << "</e>\n";
+  }
+  text << "    </ElementData>\n";
 }
 } // namespace
 
@@ -161,12 +163,10 @@ FEBioText(const FiniteElementModel & model)
   text << "  </MeshDomains>\n";
   if (model.parameters.modulusField == ModulusField::Cells)
   {
-    text << "  <MeshData>\n    <ElementData name=\"YoungsModulus\" elem_set=\"BONE\">\n";
-    for (std::size_t e = 0; e < model.modulus.size(); ++e)
-    {
-      text << "      <e lid=\"" << e + 1 << "\">" << model.modulus[e] << "</e>\n";
-    }
-    text << "    </ElementData>\n  </MeshData>\n";
+    text << "  <MeshData>\n";
+    AddMap("YoungsModulus", model.modulus, text);
+    AddMap("MassDensity", model.massDensity, text);
+    text << "  </MeshData>\n";
   }
   text << "</febio_spec>\n";
   return text.GetText();

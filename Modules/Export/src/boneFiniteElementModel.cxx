@@ -120,18 +120,22 @@ MakeNodes(const MeshArrays & mesh, FiniteElementModel & model)
 {
   model.nodes = mesh.points;
   model.elements.assign(mesh.tetrahedra.size(), {});
-  std::vector<std::pair<IdType, IdType>> edges;
-  const auto edge = [](const Id4 & t, std::size_t a, std::size_t b) { return std::minmax(t[a], t[b]); };
+  using Edge = std::pair<IdType, IdType>;
+  const auto edgeOf = [](const Id4 & t, const std::array<int, 2> & ends) -> Edge {
+    return std::minmax(t[static_cast<std::size_t>(ends[0])], t[static_cast<std::size_t>(ends[1])]);
+  };
+  std::vector<Edge> edges;
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
   {
     std::copy(mesh.tetrahedra[e].begin(), mesh.tetrahedra[e].end(), model.elements[e].begin());
-    for (std::size_t a = 0; model.order == 2 && a < 4; ++a)
+    for (const auto & ends : FiniteElementEdges)
     {
-      for (std::size_t b = a + 1; b < 4; ++b)
-      {
-        edges.push_back(edge(mesh.tetrahedra[e], a, b));
-      }
+      edges.push_back(edgeOf(mesh.tetrahedra[e], ends));
     }
+  }
+  if (model.order == 1)
+  {
+    return;
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -139,18 +143,13 @@ MakeNodes(const MeshArrays & mesh, FiniteElementModel & model)
   {
     model.nodes.push_back(0.5 * (mesh.points[static_cast<std::size_t>(a)] + mesh.points[static_cast<std::size_t>(b)]));
   }
-  for (std::size_t e = 0; !edges.empty() && e < mesh.tetrahedra.size(); ++e)
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
   {
-    for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t i = 0; i < FiniteElementEdges.size(); ++i)
     {
-      for (std::size_t b = a + 1; b < 4; ++b)
-      {
-        const auto found =
-          std::lower_bound(edges.begin(), edges.end(), std::pair<IdType, IdType>(edge(mesh.tetrahedra[e], a, b)));
-        const int place = FiniteElementEdgeNode(static_cast<int>(a), static_cast<int>(b));
-        model.elements[e][static_cast<std::size_t>(place)] =
-          static_cast<IdType>(mesh.points.size()) + static_cast<IdType>(found - edges.begin());
-      }
+      const auto found =
+        std::lower_bound(edges.begin(), edges.end(), edgeOf(mesh.tetrahedra[e], FiniteElementEdges[i]));
+      model.elements[e][4 + i] = static_cast<IdType>(mesh.points.size()) + static_cast<IdType>(found - edges.begin());
     }
   }
 }
@@ -192,17 +191,20 @@ MakeNodeModuli(const MeshArrays &          mesh,
 {
   std::vector<double> weights(model.nodes.size(), 0.0);
   model.nodeModulus.assign(model.nodes.size(), 0.0);
-  constexpr std::array<std::array<int, 2>, 10> ends = {
-    { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 3, 3 }, { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } }
-  };
   for (std::size_t e = 0; e < volumes.size(); ++e)
   {
     const CellDensity density = DensityOf(mesh, e);
     for (std::size_t i = 0; i < static_cast<std::size_t>(model.NodesEach()); ++i)
     {
       Barycentric mu = Barycentric::Zero();
-      mu[ends[i][0]] += 0.5;
-      mu[ends[i][1]] += 0.5;
+      if (i < 4)
+      {
+        mu[static_cast<int>(i)] = 1.0;
+      }
+      else
+      {
+        mu[FiniteElementEdges[i - 4][0]] = mu[FiniteElementEdges[i - 4][1]] = 0.5;
+      }
       const auto node = static_cast<std::size_t>(model.elements[e][i]);
       model.nodeModulus[node] += volumes[e] * model.law(factors.law * density.At(mu));
       weights[node] += volumes[e];
@@ -263,8 +265,27 @@ MakeMaterials(const std::vector<double> & volumes, FiniteElementModel & model)
 int
 FiniteElementEdgeNode(int cornerA, int cornerB)
 {
-  const auto [a, b] = std::minmax(cornerA, cornerB);
-  return b == 3 ? 7 + a : a + b == 1 ? 4 : a + b == 3 ? 5 : 6;
+  const auto found = std::find_if(FiniteElementEdges.begin(), FiniteElementEdges.end(), [&](const auto & ends) {
+    return std::minmax(ends[0], ends[1]) == std::minmax(cornerA, cornerB);
+  });
+  return 4 + static_cast<int>(found - FiniteElementEdges.begin());
+}
+
+std::vector<IdType>
+FiniteElementFaceNodes(const FiniteElementModel & model, const FiniteElementFace & face)
+{
+  const auto &        element = model.elements[static_cast<std::size_t>(face.element)];
+  const auto &        corners = FiniteElementFaceCorners[static_cast<std::size_t>(face.opposite)];
+  std::vector<IdType> nodes;
+  for (const int corner : corners)
+  {
+    nodes.push_back(element[static_cast<std::size_t>(corner)]);
+  }
+  for (std::size_t i = 0; model.order == 2 && i < 3; ++i)
+  {
+    nodes.push_back(element[static_cast<std::size_t>(FiniteElementEdgeNode(corners[i], corners[(i + 1) % 3]))]);
+  }
+  return nodes;
 }
 
 FiniteElementModel

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -18,30 +17,18 @@ namespace
 {
 using Nodes = std::set<IdType>;
 
-/** Adds the nodes of an element's face, those on its edges too. */
 void
 AddFaceNodes(const FiniteElementModel & model, const FiniteElementFace & face, Nodes & nodes)
 {
-  const auto & element = model.elements[static_cast<std::size_t>(face.element)];
-  const auto & corners = FiniteElementFaceCorners[static_cast<std::size_t>(face.opposite)];
-  for (std::size_t i = 0; i < 3; ++i)
-  {
-    nodes.insert(element[static_cast<std::size_t>(corners[i])]);
-    if (model.order == 2)
-    {
-      nodes.insert(element[static_cast<std::size_t>(FiniteElementEdgeNode(corners[i], corners[(i + 1) % 3]))]);
-    }
-  }
+  const auto ids = FiniteElementFaceNodes(model, face);
+  nodes.insert(ids.begin(), ids.end());
 }
 
 double
 FaceArea(const FiniteElementModel & model, const FiniteElementFace & face)
 {
-  const auto & element = model.elements[static_cast<std::size_t>(face.element)];
-  const auto & corners = FiniteElementFaceCorners[static_cast<std::size_t>(face.opposite)];
-  const auto   x = [&](std::size_t i) {
-    return model.nodes[static_cast<std::size_t>(element[static_cast<std::size_t>(corners[i])])];
-  };
+  const auto ids = FiniteElementFaceNodes(model, face);
+  const auto x = [&](std::size_t i) { return model.nodes[static_cast<std::size_t>(ids[i])]; };
   return 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
 }
 
@@ -162,7 +149,6 @@ LandmarkSetName(const std::string & name)
 void
 AddLandmarkSets(const MeshArrays & mesh, const std::vector<Landmark> & landmarks, FiniteElementModel & model)
 {
-  constexpr double      farthest = 45.0; // mm; the centre of a joint lies outside the bone
   std::set<std::string> names;
   for (const Landmark & landmark : landmarks)
   {
@@ -171,13 +157,15 @@ AddLandmarkSets(const MeshArrays & mesh, const std::vector<Landmark> & landmarks
         return (a - landmark.point).squaredNorm() < (b - landmark.point).squaredNorm();
       });
     const std::string name = LandmarkSetName(landmark.name);
-    if ((*next - landmark.point).norm() > farthest)
+    if ((*next - landmark.point).norm() > FarthestLandmark)
     {
       throw std::invalid_argument("The landmark " + landmark.name +
                                   " lies further than 45 mm from the model: is it of "
                                   "another bone, or another space?");
     }
-    if (!names.insert(name).second)
+    std::string upper = name; // Abaqus and CalculiX do not tell cases apart
+    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+    if (!names.insert(upper).second)
     {
       throw std::invalid_argument("Two landmarks would have the node set " + name + ": rename one.");
     }

@@ -136,16 +136,10 @@ AddElements(const FiniteElementModel & model, const GmshVolumes & volumes, Finit
   text << "2 1 " << (model.order == 2 ? Triangle6 : Triangle3) << ' ' << model.exterior.size() << '\n';
   for (const FiniteElementFace & face : model.exterior)
   {
-    const auto & element = model.elements[static_cast<std::size_t>(face.element)];
-    const auto & corners = FiniteElementFaceCorners[static_cast<std::size_t>(face.opposite)];
     text << ++number;
-    for (const int corner : corners)
+    for (const IdType node : FiniteElementFaceNodes(model, face))
     {
-      text << ' ' << element[static_cast<std::size_t>(corner)] + 1;
-    }
-    for (std::size_t i = 0; model.order == 2 && i < 3; ++i)
-    {
-      text << ' ' << element[static_cast<std::size_t>(FiniteElementEdgeNode(corners[i], corners[(i + 1) % 3]))] + 1;
+      text << ' ' << node + 1;
     }
     text << '\n';
   }

@@ -101,7 +101,7 @@ TEST(CurvedBoundary, BringsABallsVolumeToThatOfTheSphere)
   const auto       straight = ModelOf(mesh);
   auto             model = straight;
   const auto       sphere = Sphere(mesh, 1.0);
-  const auto       result = CurveBoundary(mesh, sphere, model);
+  const auto       result = CurveBoundary(sphere, model);
   const double     known = sphere.GetVolume();
   EXPECT_LT(VolumeOf(straight) / known, 0.975);
   EXPECT_NEAR(VolumeOf(model) / known, 1.0, 0.006);
@@ -152,7 +152,7 @@ TEST(CurvedBoundary, ElementsThatWouldSufferKeepTheirEdges)
   for (const double radius : { 0.3, 0.8 })
   {
     auto       model = ModelOf(mesh);
-    const auto result = CurveBoundary(mesh, Sphere(mesh, radius), model);
+    const auto result = CurveBoundary(Sphere(mesh, radius), model);
     EXPECT_GT(result.refused, 0) << radius;
     for (std::size_t e = 0; e < model.elements.size(); ++e)
     {
@@ -168,7 +168,7 @@ TEST(CurvedBoundary, FlatCutsStayFlat)
   mesh.quantity = DensityQuantity::AshGramPerCubicCentimetre;
   const auto straight = ModelOf(mesh);
   auto       model = straight;
-  CurveBoundary(mesh, Sphere(mesh, 1.0), model);
+  CurveBoundary(Sphere(mesh, 1.0), model);
   std::size_t cuts = 0, moved = 0;
   for (const FiniteElementSet & set : model.nodeSets)
   {
@@ -193,6 +193,6 @@ TEST(CurvedBoundary, FourNodesAreRefused)
   FiniteElementParameters parameters;
   parameters.order = 1;
   auto model = MakeFiniteElements(mesh, FindElasticityLaw("keyak1998"), parameters);
-  EXPECT_THROW(CurveBoundary(mesh, Sphere(mesh, 1.0), model), std::invalid_argument);
+  EXPECT_THROW(CurveBoundary(Sphere(mesh, 1.0), model), std::invalid_argument);
 }
 } // namespace

@@ -403,6 +403,7 @@ TEST(FiniteElementModel, RefusesWhatGivesNoModelAndSaysWhy)
   };
   EXPECT_EQ(make(), "");
   EXPECT_THAT(make({ { "a b", mesh.points[0] }, { "a-b", mesh.points[1] } }), HasSubstr("LM_a_b"));
+  EXPECT_THAT(make({ { "Head", mesh.points[0] }, { "head", mesh.points[1] } }), HasSubstr("LM_head"));
   EXPECT_THAT(make({ { "far", Vector3(0, 0, 1e4) } }), HasSubstr("landmark far"));
   mesh.quantity = DensityQuantity::HounsfieldUnit;
   EXPECT_THAT(make(), HasSubstr("is HU: calibrate"));

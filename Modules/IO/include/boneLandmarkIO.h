@@ -18,6 +18,10 @@ struct Landmark
   Vector3     point{ Vector3::Zero() };
 };
 
+/** A landmark further from a bone than this, mm, is of another one, or in another space: the centre of an acetabulum,
+ * which lies in the open, is nearer. */
+constexpr double FarthestLandmark = 45.0;
+
 /** Where a named point of a bone appears on a radiograph: column and row, fractional. */
 struct ImageLandmark
 {

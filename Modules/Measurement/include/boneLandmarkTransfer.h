@@ -49,7 +49,7 @@ std::vector<Landmark>
 CarryLandmarks(const MeshArrays &            standard,
                const std::vector<Landmark> & landmarks,
                const MeshArrays &            subject,
-               double                        farthest = 45.0);
+               double                        farthest = FarthestLandmark);
 } // namespace bone
 
 #endif
