@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneOptions.h"
 
+#include "boneParameterOptions.h"
+
 #include "boneAtomicFile.h"
 #include "boneFileName.h"
 #include "boneIOError.h"
@@ -136,6 +138,13 @@ AddAxisOption(CLI::App * command, unsigned int & axis)
     ->transform(CLI::Transformer(axes, CLI::ignore_case).description(""))
     ->check(CLI::IsMember({ 0U, 1U, 2U }).description(""))
     ->type_name("x|y|z");
+}
+
+void
+AddStorageOptions(CLI::App * command, MeshStorageParameters & storage)
+{
+  AddParameterOptions(command, storage);
+  command->get_option("--compact-error")->needs("--compact");
 }
 
 const std::vector<std::string> &

@@ -4,6 +4,7 @@
 #ifndef boneOptions_h
 #define boneOptions_h
 
+#include "boneMeshStorageParameters.h"
 #include "boneSession.h"
 
 #include <CLI/CLI.hpp>
@@ -39,6 +40,10 @@ FindInputs(const CLI::App & command);
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void
 AddAxisOption(CLI::App * command, unsigned int & axis);
+
+/** Adds --compact and --compact-error, which needs it. */
+void
+AddStorageOptions(CLI::App * command, MeshStorageParameters & storage);
 
 /** Extensions of volumes and radiographs that can be written. */
 const std::vector<std::string> &

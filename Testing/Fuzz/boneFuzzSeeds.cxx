@@ -392,6 +392,9 @@ WriteFuzzSeeds(const std::string & folder)
   WriteSurface(surface, folder);
   WriteBinarySurface(surface, folder);
   WriteMeshArrays(SubjectOf(level->GetArrays(), 1), folder + "/subject.vtu");
+  MeshStorageParameters compact;
+  compact.compact = true;
+  WriteMeshArrays(level->GetArrays(), folder + "/compact.vtu", compact);
   WriteAtlas(level, folder + "/atlas.h5");
 }
 } // namespace bone

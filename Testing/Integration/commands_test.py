@@ -128,6 +128,35 @@ class Commands(TestCase):
         with open("p.csv") as file:
             self.assertEqual(len(file.readlines()), 62)
 
+    def test_compact(self):
+        """Compact files are smaller, are read by every command, and are as near to the exact ones as they say."""
+        self.succeed("phantom", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "-o", "exact")
+        self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "--compact", "--compact-error", 3, "-o",
+                     "compact")
+        self.assertEqual(read_json("compact/report.json")["parameters"]["storage"], {"compact": True, "compactError": 3.0})
+        self.assertEqual(read_json("compact/model.hierarchy.json"), read_json("exact/model.hierarchy.json"))
+        for level in ("model_L1", "model_L2", "model_L3"):
+            size, exact = (os.path.getsize(f"{folder}/{level}.vtu") for folder in ("compact", "exact"))
+            self.assertLess(size, 0.3 * exact)
+            self.succeed("validate", f"compact/{level}.vtu")
+            images = []
+            for folder in ("compact", "exact"):
+                self.succeed("voxels", f"{folder}/{level}.vtu", "--like", "ct.nii.gz", "--outside", -2000, "-o", "v.nii.gz")
+                images.append(numpy.asarray(nibabel.load("v.nii.gz").dataobj).astype(float))
+            inside = (images[0] > -2000) & (images[1] > -2000)
+            self.assertGreater(inside.sum(), 1000)
+            self.assertLess(numpy.abs(images[0] - images[1])[inside].max(), 3.1)
+            self.assertGreater(numpy.abs(images[0] - images[1])[inside].max(), 0.3)
+        self.succeed("simplify", "compact/model_L1.vtu", "--compact", "-o", "again")
+        self.assertLess(os.path.getsize("again_L2.vtu"), 0.4 * os.path.getsize("exact/model_L2.vtu"))
+        self.succeed("fit", "ct.nii.gz", "compact/model_L1.vtu", "--compact", "--compact-error", 3, "-o", "fit.vtu")
+        self.assertLess(os.path.getsize("fit.vtu"), 0.3 * os.path.getsize("exact/model_L1.vtu"))
+        self.refuse("fit", "ct.nii.gz", "compact/model_L1.vtu", "--compact-error", 3, "-o", "x.vtu", code=2, says="--compact")
+        self.refuse("fit", "ct.nii.gz", "compact/model_L1.vtu", "--compact", "--compact-error", 1e-6, "-o", "x.vtu",
+                    says="too small")
+        self.refuse("build", "ct.nii.gz", "--labels", "l.nii.gz", "--continuous", "--max-error", 5, "-o", "x", code=2)
+
     def test_hemipelvis_branches(self):
         self.succeed("phantom", "--bone", "hemipelvis", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")

@@ -97,7 +97,7 @@ WriteOutputs(const Evaluation &  evaluation,
 {
   const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
   WriteContours(pipeline.GetMedialAxis()->GetOutput(), in("contours.vtp"));
-  WriteHierarchy(pipeline.GetCollapse()->GetOutput(), in("model"));
+  WriteHierarchy(pipeline.GetCollapse()->GetOutput(), in("model"), report.parameters.storage);
   auto geometry = const_cast<XRayGeometry *>(pipeline.GetRadiograph(0)->GetGeometry());
   WriteGeometry({ geometry }, in("drr_geometry.json"));
   for (std::size_t level = 0; level < pipeline.GetNumberOfLevels(); ++level)
@@ -406,7 +406,9 @@ AddBuildCommand(CLI::App & app, Action & action)
                  "Folder for models, contours, pictures and report; with several bones that of their folders")
     ->required();
   AddParameterOptions(command, options->parameters.plan);
-  AddParameterOptions(command, options->parameters.fit, { "degree", "continuous" });
+  AddParameterOptions(command, options->parameters.fit, { "degree", "continuous", "maximumError" });
+  command->get_option("--max-error")->excludes(command->get_option("--continuous"));
+  AddStorageOptions(command, options->parameters.storage);
   AddAxisOption(command, options->parameters.plan.axis);
   command->callback([options, &action] { action = [options](Session & session) { RunBuild(*options, session); }; });
 }

@@ -25,13 +25,14 @@ using Json = nlohmann::ordered_json;
 
 struct FitOptions
 {
-  std::string          ct;
-  std::string          series;
-  std::string          mesh;
-  DensityFitParameters parameters;
-  std::string          weights;
-  std::string          report;
-  std::string          output;
+  std::string           ct;
+  std::string           series;
+  std::string           mesh;
+  DensityFitParameters  parameters;
+  MeshStorageParameters storage;
+  std::string           weights;
+  std::string           report;
+  std::string           output;
 };
 
 /** Error at voxel centres of the mesh; with `heldOut` at those that IsHeldOut() alone. */
@@ -116,7 +117,7 @@ RunFit(const FitOptions & options, Session & session)
     session.Warn(std::to_string(fit->GetReport().unsupported) +
                  " tetrahedra lie where all weights are 0; they were fitted as if there were no weights.");
   }
-  WriteDensityMesh(fit->GetOutput(), options.output);
+  WriteDensityMesh(fit->GetOutput(), options.output, options.storage);
   if (!options.report.empty())
   {
     AtomicFile file(options.report);
@@ -136,6 +137,7 @@ AddFitCommand(CLI::App & app, Action & action)
   command->add_option("mesh", options->mesh, "Mesh (.vtu); a density it holds is replaced")->required();
   AddParameterOptions(command, options->parameters);
   command->get_option("--max-error")->excludes(command->get_option("--continuous"));
+  AddStorageOptions(command, options->storage);
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
   command->add_option("--report", options->report, "Figures of the fit, with the error at held-out voxels (.json)");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneCommands.h"
+#include "boneOptions.h"
 #include "boneParameterOptions.h"
 
 #include "boneBuildPlan.h"
@@ -21,6 +22,7 @@ struct SimplifyOptions
   TetraCollapseParameters parameters;
   BuildPlanParameters     plan;            ///< its levels, where nothing else says how far to go
   bool                    levels{ false }; ///< given
+  MeshStorageParameters   storage;
   std::string             prefix;
 };
 
@@ -66,7 +68,7 @@ RunSimplify(const SimplifyOptions & options, Session & session)
   collapse->SetParameters(parameters);
   session.Watch(collapse, "simplification");
   collapse->Update();
-  WriteHierarchy(collapse->GetOutput(), options.prefix);
+  WriteHierarchy(collapse->GetOutput(), options.prefix, options.storage);
 }
 } // namespace
 
@@ -78,6 +80,7 @@ AddSimplifyCommand(CLI::App & app, Action & action)
   command->add_option("mesh", options->mesh, "Density mesh (.vtu)")->required();
   AddParameterOptions(command, options->parameters);
   AddParameterOptions(command, options->plan, { "levels" });
+  AddStorageOptions(command, options->storage);
   command->get_option("--levels")->excludes("--tetrahedra");
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();

@@ -24,6 +24,8 @@ constexpr const char * Degree = "Degree";
 constexpr const char * DensityCoefficients = "DensityCoefficients";
 constexpr const char * FaceNeighbors = "FaceNeighbors";
 constexpr const char * DensityQuantity = "DensityQuantity";
+constexpr const char * DensityCodes = "DensityCodes";
+constexpr const char * DensityScale = "DensityScale";
 constexpr const char * MeanDensity = "MeanDensity";
 constexpr const char * Density = "Density";
 } // namespace ArrayNames
@@ -48,7 +50,7 @@ ToVtkUnstructuredGrid(const DensityMesh<TCoordinate> * mesh)
   return ToVtkUnstructuredGrid(mesh->GetArrays());
 }
 
-/** The inverse. Every array is optional and may have any numeric type: without `Degree` all tetrahedra have the degree
+/** The inverse, of the compact form too. Every array is optional and may have any numeric type: without `Degree` all tetrahedra have the degree
  * that the number of coefficients implies; missing face neighbours are computed. Throws itk::ExceptionObject with one
  * line where a cell is no linear tetrahedron (it says which types there are, and how many), an id is out of range, or
  * an array's width, length or values cannot be. */

@@ -5,6 +5,7 @@
 #define boneHierarchyIO_h
 
 #include "boneDensityHierarchy.h"
+#include "boneMeshStorageParameters.h"
 
 #include <string>
 #include <vector>
@@ -18,10 +19,12 @@ namespace bone
  * the first). All functions throw IOError.
  * \{ */
 
-/** Writes all files; none takes its name before all are whole, and the JSON comes last. Returns their paths in that
- * order. */
+/** Writes all files, levels as \ref WriteMeshArrays does; none takes its name before all are whole, and the JSON comes
+ * last. Returns their paths in that order. */
 std::vector<std::string>
-WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix);
+WriteHierarchy(const DensityHierarchy<> *    hierarchy,
+               const std::string &           prefix,
+               const MeshStorageParameters & storage = {});
 
 /** Reads a hierarchy by its .hierarchy.json. Refuses a level whose counts differ from those of its file or whose parent
  * ids are out of range. */

@@ -5,6 +5,7 @@
 #define boneMeshIO_h
 
 #include "boneDensityMesh.h"
+#include "boneMeshStorageParameters.h"
 #include "boneTriangleSurface.h"
 
 #include <array>
@@ -27,9 +28,11 @@ namespace bone
 MeshArrays
 ReadMeshArrays(const std::string & path);
 
-/** Writes the whole file or none. The name must end in .vtu. */
+/** Writes the whole file or none. The name must end in .vtu. In the compact form, which needs a density, what is made
+ * anew on reading is left out, and numbers are rounded: see the README. Throws IOError where the error that is asked
+ * for needs more than 16 bits. */
 void
-WriteMeshArrays(const MeshArrays & mesh, const std::string & path);
+WriteMeshArrays(const MeshArrays & mesh, const std::string & path, const MeshStorageParameters & storage = {});
 
 /** Any grid, as WriteMeshArrays. */
 void
@@ -40,9 +43,11 @@ ReadDensityMesh(const std::string & path);
 
 template <typename TCoordinate>
 void
-WriteDensityMesh(const DensityMesh<TCoordinate> * mesh, const std::string & path)
+WriteDensityMesh(const DensityMesh<TCoordinate> * mesh,
+                 const std::string &              path,
+                 const MeshStorageParameters &    storage = {})
 {
-  WriteMeshArrays(mesh->GetArrays(), path);
+  WriteMeshArrays(mesh->GetArrays(), path, storage);
 }
 /** \} */
 

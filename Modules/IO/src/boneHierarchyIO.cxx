@@ -4,7 +4,6 @@
 #include "boneHierarchyIO.h"
 
 #include "boneAtomicFile.h"
-#include "boneConversions.h"
 #include "boneJson.h"
 #include "boneMeshIO.h"
 #include "boneOutputTransaction.h"
@@ -125,7 +124,7 @@ FormerLevels(const std::string & jsonPath, const std::vector<std::string> & path
 } // namespace
 
 std::vector<std::string>
-WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix)
+WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix, const MeshStorageParameters & storage)
 {
   const std::string                        jsonPath = prefix + ".hierarchy.json";
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -136,7 +135,7 @@ WriteHierarchy(const DensityHierarchy<> * hierarchy, const std::string & prefix)
   {
     paths.push_back(Say(prefix, "_L", paths.size() + 1, ".vtu"));
     files.push_back(std::make_unique<AtomicFile>(paths.back()));
-    NamingFile(paths.back(), [&] { WriteVtuFile(ToVtkUnstructuredGrid(level.mesh.GetPointer()), *files.back()); });
+    NamingFile(paths.back(), [&] { WriteMeshFile(level.mesh->GetArrays(), storage, *files.back()); });
     document["levels"].push_back(FromLevel(level, paths.back()));
   }
   files.push_back(std::make_unique<AtomicFile>(jsonPath));

@@ -8,6 +8,7 @@
 #include "boneDRRParameters.h"
 #include "boneDensityFitParameters.h"
 #include "boneMeshQualityParameters.h"
+#include "boneMeshStorageParameters.h"
 #include "boneSnakeContourParameters.h"
 #include "boneTetraCollapseParameters.h"
 #include "boneTilingParameters.h"
@@ -69,6 +70,7 @@ struct BuildParameters
   DensityFitParameters      fit;
   TetraCollapseParameters   collapse;
   DRRParameters             radiograph;
+  MeshStorageParameters     storage; ///< of the models' files
 
   /** Calls visit(name of the stage, its parameters) for each. */
   template <typename TSelf, typename TVisitor>
@@ -85,6 +87,7 @@ struct BuildParameters
     visit("fit", self.fit);
     visit("collapse", self.collapse);
     visit("radiograph", self.radiograph);
+    visit("storage", self.storage);
   }
 };
 

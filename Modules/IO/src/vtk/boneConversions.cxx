@@ -4,6 +4,7 @@
 #include "boneConversions.h"
 
 #include "boneBernstein.h"
+#include "boneCompactGrid.h"
 #include "boneVtkArrays.h"
 
 #include <vtkCellArray.h>
@@ -66,6 +67,8 @@ RequireConsistentDensity(const MeshArrays & mesh)
   }
 }
 
+} // namespace
+
 void
 RequireConsistent(const MeshArrays & mesh)
 {
@@ -97,6 +100,8 @@ RequireConsistent(const MeshArrays & mesh)
   }
 }
 
+namespace
+{
 // The mean over each tetrahedron: that of its coefficients, as all Bernstein polynomials of a degree have one integral.
 std::vector<float>
 MeanDensity(const MeshArrays & mesh)
@@ -368,6 +373,7 @@ ToMeshArrays(vtkUnstructuredGrid * grid)
   ReadCells(grid, mesh);
   ReadAttributes(grid, mesh);
   ReadDensity(grid, mesh);
+  ReadCompactDensity(grid, mesh);
   return mesh;
 }
 

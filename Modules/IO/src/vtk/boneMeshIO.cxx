@@ -4,6 +4,7 @@
 #include "boneMeshIO.h"
 
 #include "boneAtomicFile.h"
+#include "boneCompactGrid.h"
 #include "boneConversions.h"
 #include "boneFileName.h"
 #include "boneMeshValidator.h"
@@ -118,6 +119,19 @@ RequireClosed(const TriangleSurface & surface)
 }
 } // namespace
 
+void
+WriteMeshFile(const MeshArrays & mesh, const MeshStorageParameters & storage, AtomicFile & file)
+{
+  if (storage.compact)
+  {
+    WriteVtuFile(ToCompactGrid(mesh, storage.compactError), file, FileSize::Small);
+  }
+  else
+  {
+    WriteVtuFile(ToVtkUnstructuredGrid(mesh), file);
+  }
+}
+
 MeshArrays
 ReadMeshArrays(const std::string & path)
 {
@@ -127,10 +141,12 @@ ReadMeshArrays(const std::string & path)
 }
 
 void
-WriteMeshArrays(const MeshArrays & mesh, const std::string & path)
+WriteMeshArrays(const MeshArrays & mesh, const std::string & path, const MeshStorageParameters & storage)
 {
   RequireExtension(path, { ".vtu" });
-  NamingFile(path, [&] { WriteUnstructuredGrid(ToVtkUnstructuredGrid(mesh), path); });
+  AtomicFile file(path);
+  NamingFile(path, [&] { WriteMeshFile(mesh, storage, file); });
+  file.Commit();
 }
 
 void

@@ -210,7 +210,7 @@ ReadSurfaceWith(const std::string & path, const char * kind)
 
 template <typename TWriter, typename TData>
 void
-WriteXml(TData * data, AtomicFile & file)
+WriteXml(TData * data, AtomicFile & file, FileSize size = FileSize::Quick)
 {
   vtkNew<MessageCatcher> messages;
   vtkNew<TWriter>        writer;
@@ -221,7 +221,11 @@ WriteXml(TData * data, AtomicFile & file)
   // Inline base64 compressed by zlib is what other readers of the format (meshio) understand.
   writer->SetDataModeToBinary();
   writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);
+  writer->SetCompressionLevel(size == FileSize::Small ? 9 : 1);
+  if (size == FileSize::Small)
+  {
+    writer->SetBlockSize(std::size_t{ 1 } << 22); // each block is compressed by itself
+  }
   writer->SetHeaderTypeToUInt64();
   if (writer->Write() == 0 || messages->Any() || writer->GetErrorCode() != vtkErrorCode::NoError)
   {
@@ -338,9 +342,9 @@ ReadStlFile(const std::string & path)
 }
 
 void
-WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file)
+WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file, FileSize size)
 {
-  WriteXml<vtkXMLUnstructuredGridWriter>(grid, file);
+  WriteXml<vtkXMLUnstructuredGridWriter>(grid, file, size);
 }
 
 void

@@ -5,6 +5,8 @@
 #define boneVtkFile_h
 
 #include "boneFileName.h"
+#include "boneMeshArrays.h"
+#include "boneMeshStorageParameters.h"
 
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
@@ -38,9 +40,19 @@ ReadPlyFile(const std::string & path);
 vtkSmartPointer<vtkXMLDataElement>
 ReadXmlFile(const std::string & path);
 
+/** Whether a file is compressed quickly or well. */
+enum class FileSize : int
+{
+  Quick,
+  Small
+};
+
 /** Write a .vtu or .vtp file to the temporary path, without committing. */
 void
-WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file);
+WriteVtuFile(vtkUnstructuredGrid * grid, AtomicFile & file, FileSize size = FileSize::Quick);
+/** The same of a density mesh. Throws itk::ExceptionObject where it is not consistent. */
+void
+WriteMeshFile(const MeshArrays & mesh, const MeshStorageParameters & storage, AtomicFile & file);
 void
 WriteVtpFile(vtkPolyData * data, AtomicFile & file);
 } // namespace bone
