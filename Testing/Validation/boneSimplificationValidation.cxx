@@ -43,9 +43,10 @@ using Faces = std::vector<std::array<IdType, 3>>;
 constexpr double Degree = 57.29577951308232;
 
 FilterType::Pointer
-MakeFilter(const MeshType * mesh, const std::vector<IdType> & counts, unsigned threads)
+MakeFilter(const MeshType * mesh, const std::vector<IdType> & counts, unsigned threads, bool improveAngles = false)
 {
   auto filter = FilterType::New();
+  filter->SetImproveAngles(improveAngles);
   filter->SetInput(mesh);
   filter->SetLevels(counts);
   filter->SetNumberOfWorkUnits(threads);
@@ -143,6 +144,25 @@ LeastAngle(const MeshArrays & mesh, bool cortical)
   return std::acos(std::min(1.0, worst)) * Degree;
 }
 
+/** Mean of the cells' smallest dihedral angles, degrees, and how many are below what finite elements want. */
+json
+AnglesOf(const MeshArrays & mesh)
+{
+  const TetraCollapseParameters wanted;
+  double                        sum = 0.0;
+  int                           below = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    const Id4 &  v = mesh.tetrahedra[t];
+    const auto & p = mesh.points;
+    const double angle = std::acos(LargestDihedralCosine(p[v[0]], p[v[1]], p[v[2]], p[v[3]]));
+    const bool   cortical = mesh.region[t] == Cortical;
+    sum += angle;
+    below += angle < (cortical ? wanted.wantedCorticalDihedralAngle : wanted.wantedDihedralAngle) ? 1 : 0;
+  }
+  return { { "mean", sum / mesh.tetrahedra.size() * Degree }, { "below", below } };
+}
+
 json
 Audit(const MeshArrays & first, const MeshArrays & level)
 {
@@ -153,6 +173,7 @@ Audit(const MeshArrays & first, const MeshArrays & level)
   out["summary"] = validation.Summary();
   out["angleCortical"] = LeastAngle(level, true);
   out["angleOther"] = LeastAngle(level, false);
+  out["angles"] = AnglesOf(level);
   for (int region : regions)
   {
     const Faces faces = BoundaryFaces(level, region), before = BoundaryFaces(first, region);
@@ -196,12 +217,17 @@ DensityError(const MeshArrays & mesh, const Images & images)
 }
 
 int
-Levels(const std::string & file, const std::string & prefix, const Images & images, const std::vector<IdType> & counts)
+Levels(const std::string &         file,
+       const std::string &         prefix,
+       const Images &              images,
+       const std::vector<IdType> & counts,
+       bool                        improveAngles)
 {
   const auto mesh = ReadDensityMesh(file);
-  const auto filter = MakeFilter(mesh, counts, 2);
+  const auto filter = MakeFilter(mesh, counts, 2, improveAngles);
   const auto seconds = TimeOf(filter);
-  const auto again = MakeFilter(mesh, counts, 2), single = MakeFilter(mesh, counts, 1);
+  const auto again = MakeFilter(mesh, counts, 2, improveAngles),
+             single = MakeFilter(mesh, counts, 1, improveAngles);
   again->Update();
   single->Update();
   WriteHierarchy(filter->GetOutput(), prefix);
@@ -300,15 +326,16 @@ main(int argc, char * argv[])
 {
   const std::string   job = argc > 1 ? argv[1] : "";
   std::vector<IdType> counts;
-  for (int i = job == "levels" ? 7 : job == "time" ? 4 : argc; i < argc; ++i)
+  for (int i = job == "levels" || job == "angles" ? 7 : job == "time" ? 4 : argc; i < argc; ++i)
   {
     counts.push_back(std::stoi(argv[i]));
   }
   try
   {
-    if (job == "levels" && argc > 7)
+    if ((job == "levels" || job == "angles") && argc > 7)
     {
-      return Levels(argv[2], argv[3], { ReadCT(argv[4]), ReadLabels(argv[5]), std::stoi(argv[6]) }, counts);
+      const Images images{ ReadCT(argv[4]), ReadLabels(argv[5]), std::stoi(argv[6]) };
+      return Levels(argv[2], argv[3], images, counts, job == "angles");
     }
     if (job == "property" && argc == 4)
     {
@@ -328,7 +355,7 @@ main(int argc, char * argv[])
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: boneSimplificationValidation levels L1.vtu PREFIX CT LABELS LABEL COUNT... | time L1.vtu REPEAT "
+  std::cerr << "usage: boneSimplificationValidation levels|angles L1.vtu PREFIX CT LABELS LABEL COUNT... | time L1.vtu REPEAT "
                "COUNT... | "
                "property FIRST LAST | compare MESH.vtu CT LABELS LABEL\n";
   return 2;

@@ -407,6 +407,7 @@ AddBuildCommand(CLI::App & app, Action & action)
     ->required();
   AddParameterOptions(command, options->parameters.plan);
   AddParameterOptions(command, options->parameters.fit, { "degree", "continuous", "maximumError" });
+  AddParameterOptions(command, options->parameters.collapse, { "improveAngles" });
   command->get_option("--max-error")->excludes(command->get_option("--continuous"));
   AddStorageOptions(command, options->parameters.storage);
   AddAxisOption(command, options->parameters.plan.axis);

@@ -81,6 +81,7 @@ AddSimplifyCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->parameters);
   AddParameterOptions(command, options->plan, { "levels" });
   AddStorageOptions(command, options->storage);
+  command->get_option("--improve-angles")->excludes("--max-surface-distance");
   command->get_option("--levels")->excludes("--tetrahedra");
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();

@@ -19,13 +19,17 @@ namespace bone
  * \brief Simplifies a layered density mesh by edge collapse into a hierarchy of levels (paper 4).
  *
  * Input: a valid mesh (primary, "Mesh"), with or without density. Output: a \ref DensityHierarchy whose first level is
- * the input and whose points are, level by level, a subset of those of the level before.
+ * the input and whose points are, level by level, a subset of those of the level before (with ImproveAngles, moved).
  *
  * Half-edge collapses are taken from a priority queue. No collapse crosses layers, leaves a boundary, an interface or
  * the rim of a flat cut, changes the topology of the body or of one of its surfaces, inverts a cell, or lets the
  * boundary pass through itself. The error of the density is always measured against the first level. Cells that change
  * are fitted again, at each level's end, to samples of the level before. Flips raise the smallest dihedral angles;
- * points stay where they are.
+ * points stay where they are, unless ImproveAngles is on: then, when a level is all but reached, points of its worst
+ * cells move, those of surfaces along the first level's, edges of surfaces are flipped, and points are moved along
+ * normals so that regions keep their volumes, until no angle is below WantedDihedralAngle (in the cortical layer
+ * WantedCorticalDihedralAngle) or the bound on volumes is reached. That is for finite elements, whose stiffness
+ * matrices small angles spoil (J. R. Shewchuk, "What is a good linear finite element?", 2002).
  *
  * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
  * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",
@@ -36,7 +40,7 @@ namespace bone
  * back.
  *
  * Parameters: \ref TetraCollapseParameters. There are as many levels after the first as the longest of Levels,
- * MaximumDensityErrors and MaximumSurfaceDistances has elements; where one of these is shorter, the rest of the levels
+ * MaximumDensityErrors and MaximumSurfaceDistances has elements; the latter cannot be had with ImproveAngles; where one of these is shorter, the rest of the levels
  * have no such number or bound. Levels must not ascend; bounds must not descend. MaximumSurfaceDistances hold at every
  * point of the surfaces. With MaximumDegree the polynomials of the changed cells with the largest error are raised
  * first. An angle of the input that is below MinimumDihedralAngle may stay. The weights are those of the cost of a

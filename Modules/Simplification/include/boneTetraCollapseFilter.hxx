@@ -6,6 +6,7 @@
 
 #include "boneBuildLevels.h"
 #include "boneMeshValidator.h"
+#include "boneQualityMeasures.h"
 #include "boneTetraCollapseFilter.h"
 
 #include <algorithm>
@@ -46,6 +47,11 @@ TetraCollapseFilter<TMesh>::VerifyPreconditions() const
                            << ", but must not descend: each level is coarser than the one before.");
     }
   };
+  if (m_Parameters.improveAngles && !distances.empty())
+  {
+    itkExceptionMacro("ImproveAngles moves surfaces, which MaximumSurfaceDistances bounds: turn it off, or leave these "
+                      "bounds out.");
+  }
   checkBounds(errors, "MaximumDensityErrors");
   checkBounds(distances, "MaximumSurfaceDistances");
 }
@@ -78,6 +84,11 @@ TetraCollapseFilter<TMesh>::GenerateData()
     typename HierarchyType::Level level;
     level.mesh = TMesh::New();
     level.mesh->SetArrays(std::move(built.mesh));
+    if (m_Parameters.improveAngles && CountInverted(level.mesh->GetArrays()) > 0)
+    {
+      itkExceptionMacro("Rounding moved points to single precision inverts tetrahedra; use a mesh with double "
+                        "coordinates, or turn ImproveAngles off.");
+    }
     level.parentPoint = std::move(built.parentPoint);
     level.densityErrorBound = built.densityErrorBound;
     level.densityError = built.densityError;

@@ -27,6 +27,13 @@ namespace bone
   value(double, minimumCorticalDihedralAngle, MinimumCorticalDihedralAngle, 0.02617993877991494, \
     ParameterRange::Between(0.0, 1.23), "rad", "min-cortical-angle", \
     "The same in the cortical layer, which may be thin; half of --min-angle where that alone is given") \
+  flag(improveAngles, ImproveAngles, false, "improve-angles", \
+    "Levels for finite elements: points slide along surfaces and edges flip where angles are below the next two") \
+  value(double, wantedDihedralAngle, WantedDihedralAngle, 0.13962634015954636, ParameterRange::Between(0.0, 1.23), \
+    "rad", "wanted-angle", "With --improve-angles: dihedral angle that cells are to have at least") \
+  value(double, wantedCorticalDihedralAngle, WantedCorticalDihedralAngle, 0.08726646259971647, \
+    ParameterRange::Between(0.0, 1.23), "rad", "wanted-cortical-angle", \
+    "The same in the cortical layer") \
   value(int, maximumDegree, MaximumDegree, -1, ParameterRange::Between(-1, MaximumBernsteinDegree), "", "max-degree", \
     "Degree to which polynomials may be raised to keep to --max-density-error; -1: not raised") \
   value(double, densityWeight, DensityWeight, 3.0, ParameterRange::NotNegative(), "", "density-weight", \

@@ -4,6 +4,7 @@
 #include "boneDensitySamples.h"
 
 #include "boneBernstein.h"
+#include "boneTetraLocator.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -254,10 +255,48 @@ DensitySamples::GiveTo(const TetraComplex &        complex,
   }
   for (IdType t : cells)
   {
-    const std::size_t stride = m_InCell[t].size() / EnoughSamples + 1;
-    m_CellError[t] = m_InCell[t].empty() ? 0.0
-                                         : static_cast<double>(stride) *
-                                             FitResidual(stride > 1 ? Thinned(m_InCell[t], stride) : m_InCell[t]);
+    MeasureCell(t);
   }
+}
+
+void
+DensitySamples::MeasureCell(IdType t)
+{
+  const std::size_t stride = m_InCell[t].size() / EnoughSamples + 1;
+  m_CellError[t] = m_InCell[t].empty() ? 0.0
+                                       : static_cast<double>(stride) *
+                                           FitResidual(stride > 1 ? Thinned(m_InCell[t], stride) : m_InCell[t]);
+}
+
+void
+DensitySamples::Distribute(const TetraComplex & complex, const Execution & execution)
+{
+  if (IsEmpty())
+  {
+    return;
+  }
+  MeshArrays          mesh;
+  std::vector<IdType> slots;
+  mesh.points = complex.Points();
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    if (complex.IsAlive(t))
+    {
+      mesh.tetrahedra.push_back(complex.Cell(t));
+      slots.push_back(t);
+    }
+  }
+  const TetraLocator  locator(mesh);
+  std::vector<IdType> cells(m_Samples.size());
+  execution.For(
+    m_Samples.size(), [&](std::size_t s) { cells[s] = slots[locator.FindNearest(m_Samples[s].x).cell]; }, 1024);
+  m_InCell.assign(complex.Size(), {});
+  m_CellError.assign(complex.Size(), 0.0);
+  for (std::size_t s = 0; s < cells.size(); ++s)
+  {
+    m_InCell[cells[s]].push_back(static_cast<int>(s));
+  }
+  execution.For(
+    slots.size(), [&](std::size_t i) { MeasureCell(slots[i]); }, 64);
 }
 } // namespace bone

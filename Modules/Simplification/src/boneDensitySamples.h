@@ -69,7 +69,13 @@ public:
   void
   GiveTo(const TetraComplex & complex, const std::vector<int> & samples, const std::vector<IdType> & cells);
 
+  /** Gives all samples to the cells that cover them, or come nearest to that. */
+  void
+  Distribute(const TetraComplex & complex, const Execution & execution);
+
 private:
+  void
+  MeasureCell(IdType t);
   double
   FitResidual(const std::vector<int> & samples) const;
 

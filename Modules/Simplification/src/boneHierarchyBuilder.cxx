@@ -18,6 +18,8 @@ constexpr double Stride = 0.3;
 constexpr double SmallestStride = 0.005;
 /** Cells are flipped once more when there are so many more than asked for: flips that make fewer cells come first. */
 constexpr double FlipAhead = 1.02;
+/** Share of the wanted angles that collapses keep to while they can. */
+constexpr double SoftShare = 0.6;
 /** How much a level's surfaceError may be too low, mm. */
 constexpr double SurfaceTolerance = 0.01;
 
@@ -42,6 +44,7 @@ HierarchyBuilder::HierarchyBuilder(MeshArrays                      mesh,
   : m_Before(std::move(mesh))
   , m_BeforePoint(m_Before.points.size())
   , m_BeforeCell(m_Before.tetrahedra.size())
+  , m_ImproveAngles(parameters.improveAngles)
 {
   if (m_Before.neighbors.empty())
   {
@@ -102,12 +105,38 @@ HierarchyBuilder::Compact(const LevelRequest & request, const Execution & execut
   return draft;
 }
 
+void
+HierarchyBuilder::CollapseBy(const std::vector<AngleFloors> & floors,
+                             IdType                           target,
+                             BuiltLevel &                     level,
+                             const Execution &                execution)
+{
+  for (std::size_t i = 0; i < floors.size() && m_Collapser->Complex().AliveCells() > target; ++i)
+  {
+    m_Collapser->SetFloors(floors[i]);
+    level.collapses += m_Collapser->Run(target, i == 0 ? execution : execution.Silent());
+  }
+}
+
 bool
 HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution & execution)
 {
-  level.collapses += m_Collapser->Run(static_cast<IdType>(FlipAhead * target), execution.Part(0.0, 0.9));
+  const AngleFloors        wanted = m_Collapser->WantedAngles(), least = m_Collapser->LeastAngles();
+  const AngleFloors        soft{ std::max(least.cortical, SoftShare * wanted.cortical),
+                          std::max(least.other, SoftShare * wanted.other) };
+  std::vector<AngleFloors> floors = { least };
+  if (m_ImproveAngles)
+  {
+    floors.insert(floors.begin(), soft);
+  }
+  CollapseBy(floors, static_cast<IdType>(FlipAhead * target), level, execution.Part(0.0, 0.9));
   m_Collapser->Flip(LevelFlipAngle, FlipCellCount::NotMore, target, execution);
-  level.collapses += m_Collapser->Run(target, execution.Part(0.9, 1.0));
+  if (m_ImproveAngles)
+  {
+    m_Collapser->ImproveAngles(target, execution.Silent());
+    floors.insert(floors.begin(), wanted);
+  }
+  CollapseBy(floors, target, level, execution.Part(0.9, 1.0));
   m_Collapser->Flip(LevelFlipAngle, FlipCellCount::Same, target, execution);
   return m_Collapser->Complex().AliveCells() <= target;
 }

@@ -44,6 +44,9 @@ private:
 
   Draft
   Compact(const LevelRequest & request, const Execution & execution) const;
+  /** Collapses under the first floors, and under the others where the ones before leave too many cells. */
+  void
+  CollapseBy(const std::vector<AngleFloors> & floors, IdType target, BuiltLevel & level, const Execution & execution);
   bool
   CollapseTo(IdType target, BuiltLevel & level, const Execution & execution);
   std::string
@@ -56,6 +59,7 @@ private:
   std::vector<IdType>            m_SampleCell;  ///< its cell of each density sample
   MeshArrays                     m_Finest;      ///< for distances
   int                            m_Degree;      ///< of changed cells
+  bool                           m_ImproveAngles;
   std::unique_ptr<MeshCollapser> m_Collapser;
 };
 } // namespace bone

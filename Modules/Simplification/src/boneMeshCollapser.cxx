@@ -16,6 +16,7 @@ namespace
 constexpr double GoodAngle = 25.0 / 57.29577951308232;
 constexpr double ShapeWeight = 0.01;
 constexpr double LengthWeight = 1e-3;
+constexpr double DeficitWeight = 0.3;
 constexpr double FlipAngle = 20.0 / 57.29577951308232;
 constexpr double RefreshShare = 0.85;
 
@@ -54,11 +55,14 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
                              const TetraCollapseParameters & parameters,
                              const Execution &               execution)
   : m_Complex(WithNeighbors(mesh))
+  , m_Improvement(parameters.improveAngles ? std::make_shared<AngleImprovement>(m_Complex) : nullptr)
+  , m_Floors{ parameters.minimumCorticalDihedralAngle, parameters.minimumDihedralAngle }
   , m_Densities(mesh, execution)
   , m_SurfaceSamples(m_Complex)
   , m_Parameters(parameters)
   // Faces will grow by some three times.
-  , m_Grid(2.0 * MeanBoundaryEdge(WithNeighbors(mesh)))
+  , m_FirstEdge(MeanBoundaryEdge(WithNeighbors(mesh)))
+  , m_Grid(2.0 * m_FirstEdge)
   , m_State(mesh.points.size(), State::Gone)
   , m_Dirty(mesh.points.size(), 1)
   , m_Target(mesh.points.size(), -1)
@@ -77,14 +81,8 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   {
     const Id4 & c = m_Complex.Cell(t);
     RegionOf(m_Complex.Region(t)).volume += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
-    for (int i = 0; i < 4; ++i)
-    {
-      if (IsTested(m_Complex, m_Complex.FaceSurfaces(t)[i]))
-      {
-        m_Grid.Insert({ c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] }, p);
-      }
-    }
   }
+  FillGrid();
   m_VolumeChange.assign(m_Regions.size(), 0.0);
   for (IdType v = 0; v < static_cast<IdType>(p.size()); ++v)
   {
@@ -92,6 +90,23 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
     {
       m_State[v] = State::Queued;
       m_Queue.push({ 0.0, v });
+    }
+  }
+}
+
+void
+MeshCollapser::FillGrid()
+{
+  m_Grid = SurfaceGrid(2.0 * m_FirstEdge);
+  for (IdType t = 0; t < m_Complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && m_Complex.IsAlive(t); ++i)
+    {
+      if (IsTested(m_Complex, m_Complex.FaceSurfaces(t)[i]))
+      {
+        const Id4 & c = m_Complex.Cell(t);
+        m_Grid.Insert({ c[TetraFaces[i][0]], c[TetraFaces[i][1]], c[TetraFaces[i][2]] }, m_Complex.Points());
+      }
     }
   }
 }
@@ -133,7 +148,7 @@ MeshOperation
 MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limits, double & cost)
 {
   const auto & p = m_Complex.Points();
-  double       worst = -1.0, volume = 0.0;
+  double       worst = -1.0, volume = 0.0, deficit = 0.0;
   std::fill(m_VolumeChange.begin(), m_VolumeChange.end(), 0.0);
   for (IdType t : m_Complex.Star(v))
   {
@@ -153,6 +168,10 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limit
     }
     const double cosine = LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
     worst = std::max(worst, cosine);
+    if (m_Improvement)
+    {
+      deficit = std::max(deficit, 1.0 - std::acos(cosine) / WantedAngles().Of(m_Complex.Region(t)));
+    }
     if (cosine > (m_Complex.Region(t) == Cortical ? limits.cortical : limits.other))
     {
       return MeshOperation::Quality;
@@ -172,14 +191,14 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limit
   const double shape = std::max(0.0, 1.0 - std::acos(worst) / GoodAngle);
   const double length = (p[v] - p[w]).norm();
   cost = densityCost + m_Parameters.surfaceWeight * surface.integral + ShapeWeight * volume * shape * shape +
-         LengthWeight * length * length * length;
+         LengthWeight * length * length * length + DeficitWeight * volume * deficit * deficit;
   return CheckVolume(v, cost);
 }
 
 MeshCollapser::Limits
 MeshCollapser::LimitsAround(IdType v) const
 {
-  Limits limits{ std::cos(m_Parameters.minimumCorticalDihedralAngle), std::cos(m_Parameters.minimumDihedralAngle) };
+  Limits limits{ std::cos(m_Floors.cortical), std::cos(m_Floors.other) };
   for (IdType t : m_Complex.Star(v))
   {
     double & limit = m_Complex.Region(t) == Cortical ? limits.cortical : limits.other;
@@ -493,6 +512,93 @@ MeshCollapser::Flip(double angle, FlipCellCount cellCount, IdType minimumCells, 
     }
   });
   return report.done;
+}
+
+void
+MeshCollapser::SetFloors(const AngleFloors & floors)
+{
+  m_Stale = m_Stale || floors != m_Floors;
+  m_Floors = floors;
+}
+
+AngleFloors
+MeshCollapser::LeastAngles() const
+{
+  return { m_Parameters.minimumCorticalDihedralAngle, m_Parameters.minimumDihedralAngle };
+}
+
+AngleFloors
+MeshCollapser::WantedAngles() const
+{
+  return { std::max(m_Parameters.wantedCorticalDihedralAngle, m_Parameters.minimumCorticalDihedralAngle),
+           std::max(m_Parameters.wantedDihedralAngle, m_Parameters.minimumDihedralAngle) };
+}
+
+void
+MeshCollapser::ImproveAngles(IdType minimumCells, const Execution & execution)
+{
+  SetFloors(WantedAngles());
+  std::vector<Id4> cells;
+  for (IdType t = 0; t < m_Complex.Size(); ++t)
+  {
+    cells.push_back(m_Complex.Cell(t));
+  }
+  const std::vector<Vector3> points = m_Complex.Points();
+  if (!m_Improvement->Run(m_Complex, { m_Floors, m_Parameters.maximumVolumeChange, minimumCells }, execution))
+  {
+    return;
+  }
+  m_Changed.resize(m_Complex.Size(), 0);
+  for (IdType t = 0; t < m_Complex.Size(); ++t)
+  {
+    const Id4 & c = m_Complex.Cell(t);
+    const bool  same =
+      t < static_cast<IdType>(cells.size()) && c == cells[t] &&
+      (c[0] < 0 || std::all_of(c.begin(), c.end(), [&](IdType p) { return m_Complex.Points()[p] == points[p]; }));
+    m_Changed[t] = m_Changed[t] || (!same && m_Complex.IsAlive(t)) ? 1 : 0;
+  }
+  m_Densities.Distribute(m_Complex, execution);
+  m_SurfaceSamples.Distribute(m_Complex);
+  FillGrid();
+  MeasureVolumes();
+  RequeueAll();
+}
+
+void
+MeshCollapser::MeasureVolumes()
+{
+  const auto & p = m_Complex.Points();
+  for (Region & region : m_Regions)
+  {
+    region.error = -region.volume;
+  }
+  for (IdType t = 0; t < m_Complex.Size(); ++t)
+  {
+    if (m_Complex.IsAlive(t))
+    {
+      const Id4 & c = m_Complex.Cell(t);
+      RegionOf(m_Complex.Region(t)).error += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    }
+  }
+}
+
+/** Where much has changed without a note of it. */
+void
+MeshCollapser::RequeueAll()
+{
+  m_Queue = {};
+  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
+  {
+    if (m_State[v] != State::Gone)
+    {
+      m_State[v] = m_Complex.Star(v).empty() ? State::Gone : State::Queued;
+      m_Dirty[v] = 1;
+    }
+    if (m_State[v] == State::Queued)
+    {
+      m_Queue.push({ m_Cost[v], v });
+    }
+  }
 }
 
 void

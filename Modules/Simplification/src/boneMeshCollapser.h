@@ -4,6 +4,7 @@
 #ifndef boneMeshCollapser_h
 #define boneMeshCollapser_h
 
+#include "boneAngleImprovement.h"
 #include "boneDensitySamples.h"
 #include "boneExecution.h"
 #include "boneSurfaceEnvelope.h"
@@ -14,6 +15,7 @@
 #include "boneTetraFlips.h"
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <queue>
 #include <vector>
@@ -31,7 +33,8 @@ namespace bone
  * (\ref SurfaceEnvelope).
  *
  * Cost of v -> w = densityWeight R(v) / range^2 + surfaceWeight S(v, w) + volumeWeight sum of ((E + dV)^2 - E^2) / V
- * + 0.01 V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3: R from \ref DensitySamples::RemovalCost, S from \ref
+ * + 0.01 V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3, and with ImproveAngles 0.3 V (1 - angle / wanted)^2 where an
+ * angle is below that wanted: R from \ref DensitySamples::RemovalCost, S from \ref
  * SurfaceSamples::CollapseCost, E and dV the volume error so far and the change of each region of volume V. */
 class MeshCollapser
 {
@@ -46,6 +49,23 @@ public:
   /** Flips at cells below the angle (rad), which make no fewer cells than \a minimumCells. Returns their number. */
   std::size_t
   Flip(double angle, FlipCellCount cellCount, IdType minimumCells, const Execution & execution);
+
+  /** \brief Raises the angles that are below those wanted, as far as the bound on volumes lets it (\ref
+   * AngleImprovement), collapsing edges where there are more cells than `minimumCells`, and keeps to those wanted from
+   * then on. \pre There is no bound on distances. */
+  void
+  ImproveAngles(IdType minimumCells, const Execution & execution);
+
+  /** Dihedral angles that collapses leave from now on where they are not smaller already; first those of the
+   * parameters.
+   */
+  void
+  SetFloors(const AngleFloors & floors);
+  AngleFloors
+  WantedAngles() const;
+  /** The floors of the parameters. */
+  AngleFloors
+  LeastAngles() const;
 
   /** Bound on the distance of boundary and interfaces to those of the finest level, both ways, mm; default infinity.
    * Must not descend. \pre The parameters hold bounds on it. */
@@ -144,11 +164,20 @@ private:
   NoteWhyParked(const Execution & execution);
   Region &
   RegionOf(int label);
+  void
+  FillGrid();
+  void
+  MeasureVolumes();
+  void
+  RequeueAll();
 
   TetraComplex                                m_Complex;
+  std::shared_ptr<const AngleImprovement>     m_Improvement; ///< none: angles are not improved
+  AngleFloors                                 m_Floors;
   DensitySamples                              m_Densities;
   SurfaceSamples                              m_SurfaceSamples;
   TetraCollapseParameters                     m_Parameters;
+  double                                      m_FirstEdge; ///< of the finest boundary, mean, mm
   SurfaceGrid                                 m_Grid;
   std::vector<Region>                         m_Regions;
   std::vector<double>                         m_VolumeChange; ///< of each region, by the candidate looked at

@@ -189,4 +189,36 @@ SurfaceSamples::GiveTo(const TetraComplex &        complex,
     }
   }
 }
+
+void
+SurfaceSamples::Distribute(const TetraComplex & complex)
+{
+  const std::size_t                                surfaces = complex.Surfaces().surfaces.size();
+  std::vector<std::vector<TriangleTree::Triangle>> triangles(surfaces);
+  std::vector<std::vector<IdType>>                 owners(surfaces);
+  const auto &                                     points = complex.Points();
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    for (int i = 0; i < 4 && complex.IsAlive(t); ++i)
+    {
+      if (complex.Carries(t, i))
+      {
+        const Id4 &  c = complex.Cell(t);
+        const auto & f = TetraFaces[i];
+        const auto   surface = static_cast<std::size_t>(complex.FaceSurfaces(t)[i]);
+        triangles[surface].push_back({ points[c[f[0]]], points[c[f[1]]], points[c[f[2]]] });
+        owners[surface].push_back(t);
+      }
+    }
+  }
+  const std::vector<TriangleTree> trees(triangles.begin(), triangles.end());
+  m_InCell.assign(complex.Size(), {});
+  for (std::size_t s = 0; s < m_Samples.size(); ++s)
+  {
+    Sample &   sample = m_Samples[s];
+    const auto nearest = trees[sample.surface].FindNearest(sample.x);
+    sample.squaredDistance = nearest.squaredDistance;
+    m_InCell[owners[sample.surface][nearest.triangle]].push_back(static_cast<int>(s));
+  }
+}
 } // namespace bone

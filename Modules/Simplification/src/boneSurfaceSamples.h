@@ -39,6 +39,10 @@ public:
   void
   GiveTo(const TetraComplex & complex, const std::vector<int> & samples, const std::vector<IdType> & cells);
 
+  /** Gives all points to the nearest face of their surface. */
+  void
+  Distribute(const TetraComplex & complex);
+
 private:
   struct Sample
   {

@@ -72,6 +72,8 @@ public:
     m_Filter->SetMinimumDihedralAngle(m_Angle);
     m_Filter->SetMinimumCorticalDihedralAngle(m_CorticalAngle);
     m_Filter->SetMaximumDegree(Uniform(0, 1) < 0.3 ? m_Mesh.maximumDegree + 2 : -1);
+    m_Improves = m_Distances.empty() && Uniform(0, 1) < 0.5;
+    m_Filter->SetImproveAngles(m_Improves);
   }
 
   std::string
@@ -137,7 +139,7 @@ private:
       parent.size() == level.points.size() && std::set<IdType>(parent.begin(), parent.end()).size() == parent.size();
     for (std::size_t p = 0; right && p < parent.size(); ++p)
     {
-      right = level.points[p] == before.points[parent[p]] && level.layer[p] == before.layer[parent[p]];
+      right = (m_Improves || level.points[p] == before.points[parent[p]]) && level.layer[p] == before.layer[parent[p]];
     }
     Require(right, "points are no subset");
   }
@@ -268,6 +270,7 @@ private:
   double              m_Volume;
   double              m_Angle;
   double              m_CorticalAngle;
+  bool                m_Improves; ///< angles: points move
   double              m_DensityRatio{ 1.0 };
   std::string         m_Prefix;
   std::ostringstream  m_Failures;

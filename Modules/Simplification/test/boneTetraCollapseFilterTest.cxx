@@ -443,6 +443,14 @@ TEST(TetraCollapseFilter, RefusesBadInputsAndParameters)
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ std::nan("") }); }, "MaximumDensityErrors is nan");
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ 5.0 }); }, "no density");
   refuses([](FilterType * f) { f->SetMaximumSurfaceDistances({ 2.0, 1.0 }); }, "MaximumSurfaceDistances are 2 1");
+  refuses(
+    [](FilterType * f) {
+      f->SetImproveAngles(true);
+      f->SetMaximumSurfaceDistances({ 1.0 });
+    },
+    "ImproveAngles moves surfaces");
+  refuses([](FilterType * f) { f->SetWantedDihedralAngle(2); }, "WantedDihedralAngle");
+  refuses([](FilterType * f) { f->SetWantedCorticalDihedralAngle(-1); }, "WantedCorticalDihedralAngle");
   refuses([](FilterType * f) { f->SetMaximumVolumeChange(-1); }, "MaximumVolumeChange");
   refuses([](FilterType * f) { f->SetMinimumDihedralAngle(2); }, "MinimumDihedralAngle");
   refuses([](FilterType * f) { f->SetMinimumCorticalDihedralAngle(-1); }, "MinimumCorticalDihedralAngle");

@@ -23,13 +23,17 @@ MeshRepair::MeshRepair(TetraComplex & complex, PointMover & mover, double distan
 {}
 
 std::size_t
-MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed)
+MeshRepair::Run(const CosineLimit & limit, const std::function<void(const std::vector<IdType> &)> & changed)
 {
   std::vector<std::pair<double, IdType>> worst;
   for (IdType t = 0; t < m_Complex.Size(); ++t)
   {
-    const double cosine = m_Complex.IsAlive(t) ? CellCosine(m_Complex, t) : -1.0;
-    if (cosine > limit)
+    if (!m_Complex.IsAlive(t))
+    {
+      continue;
+    }
+    const double cosine = CellCosine(m_Complex, t);
+    if (cosine > limit(t))
     {
       worst.emplace_back(-cosine, t);
     }
@@ -40,12 +44,12 @@ MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType>
   for (const auto & candidate : worst)
   {
     const IdType t = candidate.second;
-    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit) || IsRefused(t))
+    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit(t)) || IsRefused(t))
     {
       continue;
     }
     cells.clear();
-    if (FlipSurface(t, cells) || CollapseAt(t, cells))
+    if (FlipSurface(t, cells) || (m_Complex.AliveCells() > m_MinimumCells && CollapseAt(t, cells)))
     {
       ++count;
       changed(cells);

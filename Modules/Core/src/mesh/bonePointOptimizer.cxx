@@ -30,13 +30,17 @@ PointOptimizer::PointOptimizer(TetraComplex & complex, PointMover & mover, const
 }
 
 std::size_t
-PointOptimizer::Run(double limit, double surfaceLimit)
+PointOptimizer::Run(const CosineLimit & limit, const CosineLimit & surfaceLimit)
 {
   std::vector<std::pair<double, IdType>> worst;
   for (IdType t = 0; t < m_Complex.Size(); ++t)
   {
-    const double cosine = m_Complex.IsAlive(t) ? CellCosine(m_Complex, t) : -1.0;
-    if (cosine > limit)
+    if (!m_Complex.IsAlive(t))
+    {
+      continue;
+    }
+    const double cosine = CellCosine(m_Complex, t);
+    if (cosine > limit(t))
     {
       worst.emplace_back(-cosine, t);
     }
@@ -47,7 +51,7 @@ PointOptimizer::Run(double limit, double surfaceLimit)
   m_Dirty.resize(seen.size(), 1);
   for (const auto & candidate : worst)
   {
-    const int least = -candidate.first > surfaceLimit ? 1 : 3;
+    const int least = -candidate.first > surfaceLimit(candidate.second) ? 1 : 3;
     for (IdType p : m_Complex.Cell(candidate.second))
     {
       if (m_Dirty[p] && !seen[p] && m_Complex.Dimension(p) >= least)
