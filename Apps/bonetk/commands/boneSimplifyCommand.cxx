@@ -38,6 +38,10 @@ Verify(const TetraCollapseParameters & parameters)
   {
     throw UsageError("--max-density-error must not descend: each level is coarser than the one before");
   }
+  if (!std::is_sorted(parameters.maximumCellErrors.begin(), parameters.maximumCellErrors.end()))
+  {
+    throw UsageError("--max-cell-error must not descend: each level is coarser than the one before");
+  }
   if (!std::is_sorted(parameters.maximumSurfaceDistances.begin(), parameters.maximumSurfaceDistances.end()))
   {
     throw UsageError("--max-surface-distance must not descend: each level is coarser than the one before");
@@ -52,7 +56,7 @@ RunSimplify(const SimplifyOptions & options, Session & session)
   VerifyOutputs({ { options.prefix + ".hierarchy.json", {} } });
   const auto mesh = ReadDensityMesh(options.mesh);
   if (options.levels || (parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
-                         parameters.maximumSurfaceDistances.empty()))
+                         parameters.maximumCellErrors.empty() && parameters.maximumSurfaceDistances.empty()))
   {
     try
     {
@@ -81,7 +85,7 @@ AddSimplifyCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->parameters);
   AddParameterOptions(command, options->plan, { "levels" });
   AddStorageOptions(command, options->storage);
-  command->get_option("--improve-angles")->excludes("--max-surface-distance");
+  command->get_option("--improve-angles")->excludes("--max-surface-distance")->excludes("--max-cell-error");
   command->get_option("--levels")->excludes("--tetrahedra");
   command->add_option("-o,--output", options->prefix, "Prefix of PREFIX_L1.vtu, ... and PREFIX.hierarchy.json")
     ->required();

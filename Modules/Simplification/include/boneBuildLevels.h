@@ -22,6 +22,7 @@ struct BuiltLevel
   std::vector<IdType>                         parentPoint;               ///< id of each point in the level before
   double                                      densityErrorBound{ -1.0 }; ///< negative: none
   double                                      densityError{ 0.0 };
+  double                                      cellError{ 0.0 }; ///< largest of a changed cell, where bounds hold it
   double                                      surfaceError{ 0.0 };
   std::string                                 stopReason;
   std::size_t                                 collapses{ 0 };

@@ -33,14 +33,18 @@ namespace bone
  *
  * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
  * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",
- * "density error bound", "surface distance bound", "volume bound", "nothing more allowed". The density error is
- * measured after steps of 30 % of the cells; a step beyond the bound is taken back and halved, down to half a percent.
- * Where MaximumDegree allows it, degrees are raised before that (paper 4.3). Levels that would be as large as the one
- * before are still made. A level's surfaceError is the largest distance of its surfaces to those of the first level, or
- * back.
+ * "density error bound", "cell error bound", "surface distance bound", "volume bound", "nothing more allowed". The
+ * density error is measured after steps of 30 % of the cells; a step beyond the bound is taken back and halved, down to
+ * half a percent. Where MaximumDegree allows it, degrees are raised before that (paper 4.3). MaximumCellErrors are
+ * bounds as the paper has them: on the root mean square difference between each new cell's polynomial and the first
+ * level's density within the cell, at 64 points that are not those of its fit. Cells are then fitted to the first
+ * level, collapses and flips that leave a cell beyond the bound are refused, and degrees are raised where MaximumDegree
+ * allows it. Levels that would be as large as the one before are still made. A level's surfaceError is the largest
+ * distance of its surfaces to those of the first level, or back.
  *
  * Parameters: \ref TetraCollapseParameters. There are as many levels after the first as the longest of Levels,
- * MaximumDensityErrors and MaximumSurfaceDistances has elements; the latter cannot be had with ImproveAngles; where one of these is shorter, the rest of the levels
+ * MaximumDensityErrors, MaximumCellErrors and MaximumSurfaceDistances has elements; the last two cannot be had with
+ * ImproveAngles; where one of these is shorter, the rest of the levels
  * have no such number or bound. Levels must not ascend; bounds must not descend. MaximumSurfaceDistances hold at every
  * point of the surfaces. With MaximumDegree the polynomials of the changed cells with the largest error are raised
  * first. An angle of the input that is below MinimumDihedralAngle may stay. The weights are those of the cost of a
@@ -94,6 +98,7 @@ public:
   {
     std::size_t                                 collapses;
     std::array<std::size_t, MeshOperationCount> refused;
+    double                                      cellError; ///< largest of a cell that has changed; 0 without bounds
   };
   itkGetConstReferenceMacro(Report, std::vector<LevelReport>);
 

@@ -30,10 +30,12 @@ TetraCollapseFilter<TMesh>::VerifyPreconditions() const
   const auto & levels = m_Parameters.levels;
   const auto & errors = m_Parameters.maximumDensityErrors;
   const auto & distances = m_Parameters.maximumSurfaceDistances;
-  if (levels.empty() && errors.empty() && distances.empty())
+  const auto & cellErrors = m_Parameters.maximumCellErrors;
+  if (levels.empty() && errors.empty() && cellErrors.empty() && distances.empty())
   {
     itkExceptionMacro("No levels are asked for; give numbers of tetrahedra (SetLevels), bounds on the density error "
-                      "(SetMaximumDensityErrors) or on the distance of surfaces (SetMaximumSurfaceDistances).");
+                      "(SetMaximumDensityErrors, SetMaximumCellErrors) or on the distance of surfaces "
+                      "(SetMaximumSurfaceDistances).");
   }
   if (!std::is_sorted(levels.rbegin(), levels.rend()))
   {
@@ -52,7 +54,14 @@ TetraCollapseFilter<TMesh>::VerifyPreconditions() const
     itkExceptionMacro("ImproveAngles moves surfaces, which MaximumSurfaceDistances bounds: turn it off, or leave these "
                       "bounds out.");
   }
+  if (m_Parameters.improveAngles && !cellErrors.empty())
+  {
+    itkExceptionMacro(
+      "ImproveAngles changes tetrahedra whatever their density error is, which MaximumCellErrors bounds: "
+      "turn it off, or leave these bounds out.");
+  }
   checkBounds(errors, "MaximumDensityErrors");
+  checkBounds(cellErrors, "MaximumCellErrors");
   checkBounds(distances, "MaximumSurfaceDistances");
 }
 
@@ -70,9 +79,10 @@ TetraCollapseFilter<TMesh>::GenerateData()
   {
     itkExceptionMacro("The input 'Mesh' cannot be simplified: " << validation.Summary());
   }
-  if (!input.HasDensity() && !m_Parameters.maximumDensityErrors.empty())
+  if (!input.HasDensity() && !(m_Parameters.maximumDensityErrors.empty() && m_Parameters.maximumCellErrors.empty()))
   {
-    itkExceptionMacro("MaximumDensityErrors are set, but the input 'Mesh' has no density; fit one first.");
+    itkExceptionMacro("MaximumDensityErrors or MaximumCellErrors are set, but the input 'Mesh' has no density; fit one "
+                      "first.");
   }
   std::vector<typename HierarchyType::Level> levels(1);
   levels[0].mesh = TMesh::New();
@@ -95,7 +105,7 @@ TetraCollapseFilter<TMesh>::GenerateData()
     level.surfaceError = built.surfaceError;
     level.stopReason = std::move(built.stopReason);
     levels.push_back(std::move(level));
-    report.push_back({ built.collapses, built.refused });
+    report.push_back({ built.collapses, built.refused, built.cellError });
   }
   this->GetOutput()->SetLevels(std::move(levels));
   m_Report = std::move(report);

@@ -17,6 +17,9 @@ namespace bone
   value(std::vector<double>, maximumDensityErrors, MaximumDensityErrors, std::vector<double>(), \
     ParameterRange::NotNegativeOrInfinite(), "density units", "max-density-error", \
     "Bound on the root mean square density error of each coarser level") \
+  value(std::vector<double>, maximumCellErrors, MaximumCellErrors, std::vector<double>(), \
+    ParameterRange::NotNegativeOrInfinite(), "density units", "max-cell-error", \
+    "Bound on the root mean square density error in each new tetrahedron of each coarser level") \
   value(std::vector<double>, maximumSurfaceDistances, MaximumSurfaceDistances, std::vector<double>(), \
     ParameterRange::NotNegativeOrInfinite(), "mm", "max-surface-distance", \
     "Bound on the distance of boundary and interfaces of each coarser level to the first, and back") \

@@ -32,6 +32,8 @@ ReasonOf(const MeshCollapser & collapser)
       return "surface distance bound";
     case MeshOperation::Volume:
       return "volume bound";
+    case MeshOperation::Density:
+      return "cell error bound";
     default:
       return "nothing more allowed";
   }
@@ -86,6 +88,10 @@ HierarchyBuilder::Compact(const LevelRequest & request, const Execution & execut
   }
   const LevelDensity density(m_Before, parent, draft.cellSlot, m_Collapser->Densities(), m_SampleCell, execution);
   density.Fit(draft.mesh, m_Degree);
+  if (m_Collapser->Fits() != nullptr)
+  {
+    draft.cellError = density.FitWithin(draft.mesh, *m_Collapser->Fits(), request.maximumCellError);
+  }
   double bound = request.maximumDensityError;
   for (int attempt = 0; attempt < (bound < 0 ? 1 : 3); ++attempt)
   {
@@ -182,6 +188,7 @@ HierarchyBuilder::Next(const LevelRequest & request, const Execution & execution
   const auto      refusedBefore = m_Collapser->Refused();
   m_Collapser->ClearChanged();
   m_Collapser->SetMaximumDistance(request.maximumSurfaceDistance);
+  m_Collapser->SetMaximumCellError(request.maximumCellError);
   if (m_Before.HasDensity() && request.maximumDensityError >= 0)
   {
     level.stopReason = CollapseWithin(request, level, collapse);
@@ -194,6 +201,7 @@ HierarchyBuilder::Next(const LevelRequest & request, const Execution & execution
   level.mesh = std::move(draft.mesh);
   level.densityErrorBound = request.maximumDensityError;
   level.densityError = draft.densityError;
+  level.cellError = draft.cellError;
   level.surfaceError = LargestSurfaceDistance(m_Finest, level.mesh, SurfaceTolerance, execution.Part(0.95, 1.0));
   for (int i = 0; i < MeshOperationCount; ++i)
   {
@@ -222,8 +230,10 @@ HierarchyBuilder::Next(const LevelRequest & request, const Execution & execution
 std::vector<BuiltLevel>
 BuildLevels(MeshArrays mesh, const TetraCollapseParameters & parameters, const Execution & execution)
 {
-  const std::size_t count = std::max(
-    { parameters.levels.size(), parameters.maximumDensityErrors.size(), parameters.maximumSurfaceDistances.size() });
+  const std::size_t       count = std::max({ parameters.levels.size(),
+                                             parameters.maximumDensityErrors.size(),
+                                             parameters.maximumCellErrors.size(),
+                                             parameters.maximumSurfaceDistances.size() });
   HierarchyBuilder        builder(std::move(mesh), parameters, execution.Part(0.0, 0.02));
   const Execution         rest = execution.Part(0.02, 1.0);
   std::vector<BuiltLevel> built;
@@ -238,6 +248,10 @@ BuildLevels(MeshArrays mesh, const TetraCollapseParameters & parameters, const E
     if (i < parameters.maximumDensityErrors.size())
     {
       request.maximumDensityError = parameters.maximumDensityErrors[i];
+    }
+    if (i < parameters.maximumCellErrors.size())
+    {
+      request.maximumCellError = parameters.maximumCellErrors[i];
     }
     if (i < parameters.maximumSurfaceDistances.size())
     {

@@ -18,6 +18,7 @@ struct LevelRequest
 {
   IdType tetrahedra{ 0 };           ///< no more than these; 0: as few as the bounds allow
   double maximumDensityError{ -1 }; ///< root mean square, density units; negative: none
+  double maximumCellError{ std::numeric_limits<double>::infinity() };       ///< of each new cell, density units
   double maximumSurfaceDistance{ std::numeric_limits<double>::infinity() }; ///< mm, both ways, to the finest level
   int    maximumDegree{ -1 }; ///< to which degrees may be raised to keep to the density error; negative: not at all
 };
@@ -40,6 +41,7 @@ private:
     std::vector<IdType> pointId;
     std::vector<IdType> cellSlot;
     double              densityError{ 0.0 };
+    double              cellError{ 0.0 };
   };
 
   Draft

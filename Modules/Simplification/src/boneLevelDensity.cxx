@@ -50,21 +50,6 @@ Widen(MeshArrays & level, int degree)
 /** Points a cell of IntegratedError. Rules of fixed points keep away from faces, where the error is largest. */
 constexpr std::size_t IntegrationPoints = 24;
 
-/** Point k of a sequence that fills a tetrahedron evenly: additive recurrence in a cube by powers of the root of g^4 =
- * g + 1, sorted coordinates. */
-Barycentric
-EvenlySpread(std::size_t k)
-{
-  constexpr double G = 1.22074408460575947536;
-  double           u[3] = { 0.5 + k / G, 0.5 + k / (G * G), 0.5 + k / (G * G * G) };
-  for (double & x : u)
-  {
-    x -= std::floor(x);
-  }
-  std::sort(u, u + 3);
-  return { u[0], u[1] - u[0], u[2] - u[1], 1.0 - u[2] };
-}
-
 /** The sample of a cell that is nearest to x. */
 int
 NearestSample(const DensitySamples & samples, const std::vector<int> & candidates, const Vector3 & x)
@@ -289,5 +274,43 @@ LevelDensity::Elevate(MeshArrays & level, double bound, int maximumDegree) const
     errors.square = std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0);
   }
   return errors.weight > 0 ? std::sqrt(errors.square / errors.weight) : 0.0;
+}
+
+double
+LevelDensity::FitWithin(MeshArrays & level, const CellFits & fits, double bound) const
+{
+  std::vector<CellFits::Fit> found(level.tetrahedra.size());
+  m_Execution.Silent().For(
+    found.size(),
+    [&](std::size_t t) {
+      if (m_ParentCell[t] < 0)
+      {
+        const Id4 &  v = level.tetrahedra[t];
+        const auto & p = level.points;
+        const auto & samples = m_Samples.InCell(m_CellSlot[t]);
+        const IdType hint = samples.empty() ? -1 : samples.front() / DensitySamples::SamplesPerCell;
+        found[t] = fits.FitCell({ p[v[0]], p[v[1]], p[v[2]], p[v[3]] }, bound, hint);
+      }
+    },
+    16);
+  int    highest = level.maximumDegree;
+  double largest = 0.0;
+  for (const auto & fit : found)
+  {
+    highest = std::max(highest, fit.degree);
+    largest = std::max(largest, fit.error);
+  }
+  Widen(level, highest);
+  const std::size_t row = BernsteinCount(level.maximumDegree);
+  for (std::size_t t = 0; t < found.size(); ++t)
+  {
+    if (m_ParentCell[t] < 0)
+    {
+      level.degree[t] = found[t].degree;
+      std::fill_n(&level.coefficients[row * t], row, 0.0);
+      std::copy(found[t].coefficients.begin(), found[t].coefficients.end(), &level.coefficients[row * t]);
+    }
+  }
+  return largest;
 }
 } // namespace bone

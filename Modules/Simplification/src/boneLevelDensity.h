@@ -4,6 +4,7 @@
 #ifndef boneLevelDensity_h
 #define boneLevelDensity_h
 
+#include "boneCellFits.h"
 #include "boneDensityFitKernel.h"
 #include "boneDensitySamples.h"
 #include "boneExecution.h"
@@ -44,6 +45,13 @@ public:
    * A cell keeps its lower degree where the higher one does not make it better. Returns the error. */
   double
   Elevate(MeshArrays & level, double bound, int maximumDegree) const;
+
+  /** \brief Fits changed cells to the finest level in place of the level before, with the lowest degree that keeps to
+   * the bound on their errors.
+   *
+   * Returns the largest error of a changed cell. */
+  double
+  FitWithin(MeshArrays & level, const CellFits & fits, double bound) const;
 
   /** Root mean square difference of a level's density to the samples of the finest, in density units; as those are few,
    * it may be some percent too low. */

@@ -70,7 +70,13 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   , m_Epoch(mesh.points.size(), 0)
   , m_RefreshAt(m_Complex.AliveCells())
   , m_Changed(mesh.tetrahedra.size(), 0)
+  , m_RefusedTarget(mesh.points.size(), -1)
+  , m_RefusedAt(mesh.points.size(), 0)
 {
+  if (!parameters.maximumCellErrors.empty())
+  {
+    m_Fits = std::make_shared<CellFits>(WithNeighbors(mesh), mesh.maximumDegree, parameters.maximumDegree);
+  }
   execution.ThrowIfAborted();
   if (!parameters.maximumSurfaceDistances.empty())
   {
@@ -310,6 +316,43 @@ MeshCollapser::FindBest(IdType v)
   return best;
 }
 
+bool
+MeshCollapser::IsWithinCellError(const Id4 & cell, IdType near) const
+{
+  const auto & samples = m_Densities.InCell(near);
+  const auto & p = m_Complex.Points();
+  const IdType hint = samples.empty() ? -1 : samples.front() / DensitySamples::SamplesPerCell;
+  const auto   fit = m_Fits->FitCell({ p[cell[0]], p[cell[1]], p[cell[2]], p[cell[3]] }, m_MaximumCellError, hint);
+  return fit.error <= m_MaximumCellError;
+}
+
+/** Whether all cells that v -> w leaves are within the bound on their errors: takes far longer than all else, and is
+ * looked at last. */
+bool
+MeshCollapser::KeepsCellErrors(IdType v, IdType w)
+{
+  if (!(m_MaximumCellError < std::numeric_limits<double>::infinity()))
+  {
+    return true;
+  }
+  if (m_RefusedTarget[v] == w && !m_Complex.HasChanged(v, m_RefusedAt[v]))
+  {
+    return false;
+  }
+  for (IdType t : m_Complex.Star(v))
+  {
+    Id4 c = m_Complex.Cell(t);
+    c[m_Complex.LocalIndex(t, v)] = w;
+    if (!m_Complex.Has(t, w) && !IsWithinCellError(c, t))
+    {
+      m_RefusedTarget[v] = w;
+      m_RefusedAt[v] = m_Complex.Clock();
+      return false;
+    }
+  }
+  return true;
+}
+
 void
 MeshCollapser::UpdateGrid(IdType v, bool insert)
 {
@@ -385,22 +428,35 @@ void
 MeshCollapser::NoteWhyParked(const Execution & execution)
 {
   const auto before = m_Refused;
+  bool       density = false;
   for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
   {
     if (m_State[v] == State::Parked)
     {
       execution.ThrowIfAborted();
-      FindBest(v);
+      density = FindBest(v).w >= 0 || density; // what else is allowed
     }
   }
   const auto grown = [&](MeshOperation reason) {
     return m_Refused[static_cast<int>(reason)] - before[static_cast<int>(reason)];
   };
   const auto distance = grown(MeshOperation::Distance), volume = grown(MeshOperation::Volume);
-  m_StoppedBy = distance + volume == 0 ? MeshOperation::Done
-                : distance >= volume   ? MeshOperation::Distance
-                                       : MeshOperation::Volume;
+  m_StoppedBy = density                  ? MeshOperation::Density
+                : distance + volume == 0 ? MeshOperation::Done
+                : distance >= volume     ? MeshOperation::Distance
+                                         : MeshOperation::Volume;
   m_Refused = before;
+}
+
+void
+MeshCollapser::SetMaximumCellError(double error)
+{
+  m_Stale = m_Stale || error != m_MaximumCellError;
+  if (error != m_MaximumCellError)
+  {
+    std::fill(m_RefusedTarget.begin(), m_RefusedTarget.end(), -1);
+  }
+  m_MaximumCellError = error;
 }
 
 void
@@ -451,6 +507,12 @@ MeshCollapser::Run(IdType target, const Execution & execution)
         continue;
       }
     }
+    if (!KeepsCellErrors(v, m_Target[v]))
+    {
+      ++m_Refused[static_cast<int>(MeshOperation::Density)];
+      m_State[v] = State::Parked;
+      continue;
+    }
     Commit(v, m_Target[v]);
     ++collapses;
     ++m_Collapses;
@@ -497,6 +559,14 @@ MeshCollapser::Flip(double angle, FlipCellCount cellCount, IdType minimumCells, 
   parameters.targetAngle = angle;
   parameters.cellCount = cellCount;
   parameters.minimumCells = minimumCells;
+  if (m_MaximumCellError < std::numeric_limits<double>::infinity())
+  {
+    parameters.guard = [this](const std::vector<Id4> & created) {
+      return std::all_of(created.begin(), created.end(), [this](const Id4 & cell) {
+        return IsWithinCellError(cell, m_Complex.Star(cell[0]).front());
+      });
+    };
+  }
   const auto report = ImproveByFlips(m_Complex, parameters, [this, &execution](const FlipResult & flip) {
     execution.ThrowIfAborted();
     m_Changed.resize(m_Complex.Size(), 0);

@@ -5,6 +5,7 @@
 #define boneMeshCollapser_h
 
 #include "boneAngleImprovement.h"
+#include "boneCellFits.h"
 #include "boneDensitySamples.h"
 #include "boneExecution.h"
 #include "boneSurfaceEnvelope.h"
@@ -72,6 +73,18 @@ public:
   void
   SetMaximumDistance(double distance);
 
+  /** Bound on the density error of each new cell (\ref CellFits), density units; default infinity. Must not descend.
+   * \pre The parameters hold bounds on it. */
+  void
+  SetMaximumCellError(double error);
+
+  /** The fits of cells by the finest level; null where no bound on their errors is held by the parameters. */
+  const CellFits *
+  Fits() const
+  {
+    return m_Fits.get();
+  }
+
   const TetraComplex &
   Complex() const
   {
@@ -82,8 +95,8 @@ public:
   {
     return m_Densities;
   }
-  /** Where nothing was left to collapse: the bound that refuses most candidates, Distance or Volume; Done where neither
-   * refuses any. */
+  /** Where nothing was left to collapse: Density where the bound on cells refuses any, else the bound that refuses most
+   * candidates, Distance or Volume; Done where none refuses any. */
   MeshOperation
   StoppedBy() const
   {
@@ -156,6 +169,10 @@ private:
   Commit(IdType v, IdType w);
   void
   UpdateGrid(IdType v, bool insert);
+  bool
+  KeepsCellErrors(IdType v, IdType w);
+  bool
+  IsWithinCellError(const Id4 & cell, IdType near) const;
   void
   Refresh(IdType minimumCells, const Execution & execution);
   bool
@@ -193,6 +210,10 @@ private:
   std::vector<char>                           m_Changed;
   std::optional<SurfaceEnvelope>              m_Envelope;
   double                                      m_MaximumDistance{ std::numeric_limits<double>::infinity() };
+  std::shared_ptr<const CellFits>             m_Fits;
+  double                                      m_MaximumCellError{ std::numeric_limits<double>::infinity() };
+  std::vector<IdType>                         m_RefusedTarget; ///< of each point, by the bound on cells; -1: none
+  std::vector<std::uint32_t>                  m_RefusedAt;     ///< by the complex' clock
   MeshOperation                               m_StoppedBy{ MeshOperation::Done };
   std::array<std::size_t, MeshOperationCount> m_Refused{};
   std::vector<TetraComplex::SurfaceFace>      m_Faces;

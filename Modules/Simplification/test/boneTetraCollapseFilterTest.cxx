@@ -442,6 +442,14 @@ TEST(TetraCollapseFilter, RefusesBadInputsAndParameters)
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ -1.0 }); }, "MaximumDensityErrors is -1");
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ std::nan("") }); }, "MaximumDensityErrors is nan");
   refuses([](FilterType * f) { f->SetMaximumDensityErrors({ 5.0 }); }, "no density");
+  refuses([](FilterType * f) { f->SetMaximumCellErrors({ 5.0 }); }, "no density");
+  refuses([](FilterType * f) { f->SetMaximumCellErrors({ 5.0, 4.0 }); }, "MaximumCellErrors are 5 4");
+  refuses(
+    [](FilterType * f) {
+      f->SetImproveAngles(true);
+      f->SetMaximumCellErrors({ 1.0 });
+    },
+    "which MaximumCellErrors bounds");
   refuses([](FilterType * f) { f->SetMaximumSurfaceDistances({ 2.0, 1.0 }); }, "MaximumSurfaceDistances are 2 1");
   refuses(
     [](FilterType * f) {

@@ -20,6 +20,9 @@ struct FlipResult
   std::vector<IdType> created; ///< slots of the new cells (removed slots are reused)
 };
 
+/** Whether cells may come. */
+using FlipGuard = std::function<bool(const std::vector<Id4> & created)>;
+
 /** Longest ring of cells around an edge that RemoveEdge looks at. */
 constexpr int MaximumEdgeRing = 9;
 
@@ -27,9 +30,10 @@ constexpr int MaximumEdgeRing = 9;
  *
  * Refused where the face belongs to an interface or the boundary, where a new cell would not be positive (exact), and
  * where the smallest dihedral angle of the touched cells would not rise by more than the factor `1 + gain` (of its
- * cosine's distance to 1). The mesh is unchanged unless `outcome` is Done. */
+ * cosine's distance to 1), and where the guard, if there is one, does not let the new cells come (Density). The mesh is
+ * unchanged unless `outcome` is Done. */
 FlipResult
-RemoveFace(TetraComplex & complex, IdType t, int i);
+RemoveFace(TetraComplex & complex, IdType t, int i, const FlipGuard & guard = {});
 
 /** \brief Edge removal: the n cells around edge (a, b) become 2 (n - 2); n = 3 is the 3-2 flip, n = 4 the 4-4 flip.
  *
@@ -91,6 +95,7 @@ struct FlipParameters : TetraSwapParameters
 {
   FlipCellCount cellCount{ FlipCellCount::Any };
   IdType        minimumCells{ 0 }; ///< no flip makes fewer cells than this
+  FlipGuard     guard{};           ///< none: all flips are allowed
 };
 
 struct FlipReport

@@ -34,7 +34,11 @@ IsPositive(const TetraComplex & complex, const Id4 & c)
 }
 
 FlipResult
-Commit(TetraComplex & complex, std::vector<IdType> removed, const std::vector<Id4> & created, double before)
+Commit(TetraComplex &           complex,
+       std::vector<IdType>      removed,
+       const std::vector<Id4> & created,
+       double                   before,
+       const FlipGuard &        guard)
 {
   FlipResult result;
   double     after = -1.0;
@@ -53,6 +57,11 @@ Commit(TetraComplex & complex, std::vector<IdType> removed, const std::vector<Id
       result.outcome = MeshOperation::Orientation;
       return result;
     }
+  }
+  if (guard && !guard(created))
+  {
+    result.outcome = MeshOperation::Density;
+    return result;
   }
   result.created = complex.Replace(removed, created);
   result.removed = std::move(removed);
@@ -267,7 +276,7 @@ FindHalfRing(const TetraComplex & complex, IdType a, IdType b, IdType first, int
 
 /** Edge removal from a cell that has the edge: stars may be large. `ring` gets the cells that were looked at. */
 FlipResult
-RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell, Ring & ring)
+RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell, Ring & ring, const FlipGuard & guard = {})
 {
   FlipResult result;
   result.outcome = FindRing(complex, a, b, cell, ring);
@@ -286,7 +295,8 @@ RemoveEdgeAt(TetraComplex & complex, IdType a, IdType b, IdType cell, Ring & rin
     result.outcome = MeshOperation::Quality;
     return result;
   }
-  return Commit(complex, { ring.cells.begin(), ring.cells.begin() + ring.cellCount }, triangulation.Cells(), before);
+  return Commit(
+    complex, { ring.cells.begin(), ring.cells.begin() + ring.cellCount }, triangulation.Cells(), before, guard);
 }
 
 /** Tries all flips at one cell; the first that is done ends it. */
@@ -325,7 +335,7 @@ public:
         continue;
       }
       Ring looked;
-      if (Note(RemoveEdgeAt(m_Complex, a, b, t, looked)))
+      if (Note(RemoveEdgeAt(m_Complex, a, b, t, looked, m_Parameters.guard)))
       {
         return true;
       }
@@ -339,7 +349,7 @@ public:
     {
       if (!m_Memory.IsFaceRefused(m_Complex, t, i))
       {
-        if (Note(RemoveFace(m_Complex, t, i)))
+        if (Note(RemoveFace(m_Complex, t, i, m_Parameters.guard)))
         {
           return true;
         }
@@ -390,7 +400,7 @@ CellCosine(const TetraComplex & complex, IdType t)
 }
 
 FlipResult
-RemoveFace(TetraComplex & complex, IdType t, int i)
+RemoveFace(TetraComplex & complex, IdType t, int i, const FlipGuard & guard)
 {
   FlipResult   result;
   const IdType other = complex.Neighbors(t)[i];
@@ -415,7 +425,7 @@ RemoveFace(TetraComplex & complex, IdType t, int i)
     created.push_back({ cell[TetraFaces[i][k]], cell[TetraFaces[i][(k + 1) % 3]], apex, cell[i] });
     std::swap(created.back()[0], created.back()[1]);
   }
-  return Commit(complex, { t, other }, created, std::max(CellCosine(complex, t), CellCosine(complex, other)));
+  return Commit(complex, { t, other }, created, std::max(CellCosine(complex, t), CellCosine(complex, other)), guard);
 }
 
 FlipResult
