@@ -261,7 +261,7 @@ Levels(const std::string &         file,
 int
 Compare(const std::string & file, const Images & images)
 {
-  std::cout << DensityError(ReadDensityMesh(file)->GetArrays(), images) << '\n';
+  std::cout << DensityError(ReadMeshArrays(file), images) << '\n';
   return 0;
 }
 
