@@ -5,7 +5,9 @@ import os
 import tempfile
 
 import numpy
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from vtkmodules.vtkFiltersCore import vtkImageAppend
+from vtkmodules.vtkIOImage import vtkMetaImageReader, vtkMetaImageWriter
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
 
@@ -57,10 +59,10 @@ class Register(TestCase):
         self.command = ["register", "rigid", "m/model.hierarchy.json", "--xray", "x_V1.mha", "x_V2.mha", "--geometry",
                         "views.json", "--pixels", 128]
 
-    def error(self, path):
+    def error(self, path, above=0):
         """How far the pose found moves the corners of a cube of 100 mm about the centre, mm; the truth moves nothing."""
         matrix = numpy.array(read_json(path)["transform"])
-        corners = numpy.array(read_json("centre.json")) + 50 * numpy.array(
+        corners = numpy.array(read_json("centre.json")) + [0, 0, above] + 50 * numpy.array(
             [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         return numpy.linalg.norm(corners @ matrix[:3, :3].T + matrix[:3, 3] - corners, axis=1).max()
 
@@ -126,10 +128,43 @@ class Register(TestCase):
         self.assertLess(self.error("r.json"), 1.0)
 
     def test_several_bodies(self):
-        self.succeed(*self.command, "--model", "m/model_L2.vtu", "--search", 2, 2, "-o", "r")
-        for name in ("r_B1", "r_B2"):
-            self.assertLess(self.error(name + ".json"), 1.5)
-            self.assertIn(name + "_V2.png", os.listdir())
+        """Two bones of one CT, one above the other."""
+        reader = vtkMetaImageReader()
+        reader.SetFileName("ct.mha")
+        stack = vtkImageAppend()
+        stack.SetAppendAxis(2)
+        stack.AddInputConnection(reader.GetOutputPort())
+        stack.AddInputConnection(reader.GetOutputPort())
+        writer = vtkMetaImageWriter()
+        writer.SetFileName("both.mha")
+        writer.SetInputConnection(stack.GetOutputPort())
+        writer.Write()
+        low, high = reader.GetDataExtent()[4:]
+        above = 2.5 * (high - low + 1)
+        mesh = vtkXMLUnstructuredGridReader()
+        mesh.SetFileName("m/model_L1.vtu")
+        mesh.Update()
+        points = mesh.GetOutput().GetPoints()
+        for i in range(points.GetNumberOfPoints()):
+            x, y, z = points.GetPoint(i)
+            points.SetPoint(i, x, y, z + above)
+        shifted = vtkXMLUnstructuredGridWriter()
+        shifted.SetFileName("above.vtu")
+        shifted.SetInputData(mesh.GetOutput())
+        shifted.Write()
+        views = []
+        for seen in read_json("views.json"):
+            u, v, origin = (numpy.array(seen[k]) for k in ("detectorU", "detectorV", "detectorOrigin"))
+            middle = numpy.array([0, 0, above / 2])
+            views.append({**seen, "source": list(seen["source"] + middle), "size": [2 * SIZE, 2 * SIZE], "spacing": [2.5, 2.5],
+                          "detectorOrigin": list(origin + middle + (SIZE - 1 - 1.25 * (2 * SIZE - 1)) * (u + v))})
+        write_json(views, "wide.json")
+        self.succeed("drr", "both.mha", "--geometry", "wide.json", "--bilinear", "-o", "w.mha")
+        self.succeed("register", "rigid", "m/model.hierarchy.json", "--xray", "w_V1.mha", "w_V2.mha", "--geometry", "wide.json",
+                     "--pixels", 256, "--model", "above.vtu", "--search", 10, 5, "-o", "r")
+        for number, offset in ((1, 0), (2, above)):
+            self.assertLess(self.error(f"r_B{number}.json", offset), 1.0)
+            self.assertIn(f"r_B{number}_V2.png", os.listdir())
 
     def test_a_view_that_is_elsewhere(self):
         geometry = read_json("views.json")
