@@ -21,18 +21,6 @@ constexpr double FlippedAngle = 0.44;
 /** Share of the bound on volumes that is left alone. */
 constexpr double VolumeSlack = 0.3;
 
-double
-MeanEdge(const TetraComplex & complex)
-{
-  const auto faces = BoundaryFaces(complex);
-  double     sum = 0.0;
-  for (const auto & face : faces)
-  {
-    sum += (complex.Points()[face[0]] - complex.Points()[face[1]]).norm();
-  }
-  return faces.empty() ? 0.0 : sum / static_cast<double>(faces.size());
-}
-
 /** One run: the tools, which know the complex as it is. */
 class Improver
 {
@@ -41,7 +29,7 @@ public:
     : m_Complex(complex)
     , m_Execution(execution)
     , m_Goal(goal)
-    , m_Edge(MeanEdge(complex))
+    , m_Edge(MeanBoundaryEdge(complex))
     , m_Bound(complex, surfaces, m_Edge)
     , m_Mover(complex, &m_Bound, execution)
     , m_Optimizer(complex, m_Mover, surfaces)

@@ -20,18 +20,6 @@ constexpr double DeficitWeight = 0.3;
 constexpr double FlipAngle = 20.0 / 57.29577951308232;
 constexpr double RefreshShare = 0.85;
 
-double
-MeanBoundaryEdge(const MeshArrays & mesh)
-{
-  const auto faces = BoundaryFaces(mesh);
-  double     sum = 0.0;
-  for (const auto & f : faces)
-  {
-    sum += (mesh.points[f[0]] - mesh.points[f[1]]).norm();
-  }
-  return sum > 0 ? sum / static_cast<double>(faces.size()) : 1.0;
-}
-
 MeshArrays
 WithNeighbors(MeshArrays mesh)
 {
@@ -61,7 +49,7 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   , m_SurfaceSamples(m_Complex)
   , m_Parameters(parameters)
   // Faces will grow by some three times.
-  , m_FirstEdge(MeanBoundaryEdge(WithNeighbors(mesh)))
+  , m_FirstEdge(MeanBoundaryEdge(m_Complex))
   , m_Grid(2.0 * m_FirstEdge)
   , m_State(mesh.points.size(), State::Gone)
   , m_Dirty(mesh.points.size(), 1)

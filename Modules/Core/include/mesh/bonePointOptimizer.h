@@ -16,6 +16,11 @@ namespace bone
 /** The largest cosine of a dihedral angle that a cell is to have. */
 using CosineLimit = std::function<double(IdType)>;
 
+/** Living cells whose smallest dihedral angle has a cosine above their limit, the worst first; each after the negative
+ * of that cosine. */
+std::vector<std::pair<double, IdType>>
+FindWorstCells(const TetraComplex & complex, const CosineLimit & limit);
+
 /** \class PointOptimizer
  * \brief Moves the points of the worst cells so that the smallest dihedral angle around each rises.
  *

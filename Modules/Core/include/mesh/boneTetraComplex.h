@@ -245,6 +245,10 @@ private:
   mutable std::vector<char>        m_Mark;    ///< of points, for LinksMeetInEdgeLink; else 0
 };
 
+/** Mean length of the boundary's edges, mm; 1 where there are none. */
+double
+MeanBoundaryEdge(const TetraComplex & complex);
+
 /** Triangles of the boundary, outward. */
 std::vector<std::array<IdType, 3>>
 BoundaryFaces(const TetraComplex & complex);

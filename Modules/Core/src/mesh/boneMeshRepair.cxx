@@ -25,23 +25,9 @@ MeshRepair::MeshRepair(TetraComplex & complex, PointMover & mover, double distan
 std::size_t
 MeshRepair::Run(const CosineLimit & limit, const std::function<void(const std::vector<IdType> &)> & changed)
 {
-  std::vector<std::pair<double, IdType>> worst;
-  for (IdType t = 0; t < m_Complex.Size(); ++t)
-  {
-    if (!m_Complex.IsAlive(t))
-    {
-      continue;
-    }
-    const double cosine = CellCosine(m_Complex, t);
-    if (cosine > limit(t))
-    {
-      worst.emplace_back(-cosine, t);
-    }
-  }
-  std::sort(worst.begin(), worst.end());
   std::size_t         count = 0;
   std::vector<IdType> cells;
-  for (const auto & candidate : worst)
+  for (const auto & candidate : FindWorstCells(m_Complex, limit))
   {
     const IdType t = candidate.second;
     if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit(t)) || IsRefused(t))

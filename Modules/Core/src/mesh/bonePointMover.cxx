@@ -38,19 +38,6 @@ ForEachBoundaryTriangle(const TetraComplex & complex, TVisit visit)
     }
   }
 }
-
-double
-MeanBoundaryEdge(const TetraComplex & complex)
-{
-  const auto & points = complex.Points();
-  double       sum = 0.0;
-  std::size_t  count = 0;
-  ForEachBoundaryTriangle(complex, [&](const TriangleIds & t) {
-    sum += (points[t[0]] - points[t[1]]).norm();
-    ++count;
-  });
-  return sum > 0 ? sum / static_cast<double>(count) : 1.0;
-}
 } // namespace
 
 PointMover::PointMover(TetraComplex & complex, SurfaceBound * bound, const Execution & execution)

@@ -8,6 +8,26 @@
 
 namespace bone
 {
+std::vector<std::pair<double, IdType>>
+FindWorstCells(const TetraComplex & complex, const CosineLimit & limit)
+{
+  std::vector<std::pair<double, IdType>> worst;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    if (!complex.IsAlive(t))
+    {
+      continue;
+    }
+    const double cosine = CellCosine(complex, t);
+    if (cosine > limit(t))
+    {
+      worst.emplace_back(-cosine, t);
+    }
+  }
+  std::sort(worst.begin(), worst.end());
+  return worst;
+}
+
 PointOptimizer::PointOptimizer(TetraComplex & complex, PointMover & mover, const SurfaceTarget & target)
   : m_Complex(complex)
   , m_Mover(mover)
@@ -32,24 +52,10 @@ PointOptimizer::PointOptimizer(TetraComplex & complex, PointMover & mover, const
 std::size_t
 PointOptimizer::Run(const CosineLimit & limit, const CosineLimit & surfaceLimit)
 {
-  std::vector<std::pair<double, IdType>> worst;
-  for (IdType t = 0; t < m_Complex.Size(); ++t)
-  {
-    if (!m_Complex.IsAlive(t))
-    {
-      continue;
-    }
-    const double cosine = CellCosine(m_Complex, t);
-    if (cosine > limit(t))
-    {
-      worst.emplace_back(-cosine, t);
-    }
-  }
-  std::sort(worst.begin(), worst.end());
   std::size_t       moves = 0;
   std::vector<char> seen(m_Complex.Points().size(), 0);
   m_Dirty.resize(seen.size(), 1);
-  for (const auto & candidate : worst)
+  for (const auto & candidate : FindWorstCells(m_Complex, limit))
   {
     const int least = -candidate.first > surfaceLimit(candidate.second) ? 1 : 3;
     for (IdType p : m_Complex.Cell(candidate.second))

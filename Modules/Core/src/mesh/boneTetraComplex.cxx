@@ -587,4 +587,16 @@ BoundaryFaces(const TetraComplex & complex)
   }
   return faces;
 }
+
+double
+MeanBoundaryEdge(const TetraComplex & complex)
+{
+  const auto faces = BoundaryFaces(complex);
+  double     sum = 0.0;
+  for (const auto & face : faces)
+  {
+    sum += (complex.Points()[face[0]] - complex.Points()[face[1]]).norm();
+  }
+  return sum > 0 ? sum / static_cast<double>(faces.size()) : 1.0;
+}
 } // namespace bone
