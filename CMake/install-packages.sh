@@ -14,6 +14,8 @@ while read -r package; do
   status=$(dpkg-query -W -f '${Status}' "$package" 2> /dev/null || true)
   [ "$status" = "install ok installed" ] || missing+=("$package")
 done < "$list"
+# Not in the list, as Debian's npm and a nodejs of another archive, which brings its own npm, exclude each other.
+command -v npm > /dev/null || missing+=(nodejs npm)
 [ ${#missing[@]} -gt 0 ] || exit 0
 
 as_root=()

@@ -1,0 +1,15 @@
+import '@kitware/vtk.js/Rendering/OpenGL/Profiles/Geometry.js';
+import vtkActor from '@kitware/vtk.js/Rendering/Core/Actor.js';
+import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper.js';
+import vtkPolyData from '@kitware/vtk.js/Common/DataModel/PolyData.js';
+import vtkDataArray from '@kitware/vtk.js/Common/Core/DataArray.js';
+import vtkPlane from '@kitware/vtk.js/Common/DataModel/Plane.js';
+import vtkColorTransferFunction from '@kitware/vtk.js/Rendering/Core/ColorTransferFunction.js';
+import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow.js';
+import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer.js';
+import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow.js';
+import vtkInteractor from '@kitware/vtk.js/Rendering/Core/RenderWindowInteractor.js';
+import vtkStyle from '@kitware/vtk.js/Interaction/Style/InteractorStyleTrackballCamera.js';
+import vtkOrientationMarkerWidget from '@kitware/vtk.js/Interaction/Widgets/OrientationMarkerWidget.js';
+import vtkAnnotatedCubeActor from '@kitware/vtk.js/Rendering/Core/AnnotatedCubeActor.js';
+window.x=[vtkActor,vtkMapper,vtkPolyData,vtkDataArray,vtkPlane,vtkColorTransferFunction,vtkRenderWindow,vtkRenderer,vtkOpenGLRenderWindow,vtkInteractor,vtkStyle,vtkOrientationMarkerWidget,vtkAnnotatedCubeActor];
