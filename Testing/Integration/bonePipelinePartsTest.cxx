@@ -276,7 +276,7 @@ TEST(Canvas, DrawsAPanelThroughItsWindow)
   panel.columns = 3;
   panel.rows = 1;
   panel.values = { 0.0F, 10.0F, std::nanf("") };
-  bone::Canvas canvas(3, 1, { { 9, 9, 9 } });
+  bone::Canvas canvas(3.0, 1.0, { { 9, 9, 9 } });
   canvas.DrawPanel(0, 0, panel, { 0.0, 10.0 });
   EXPECT_EQ(canvas.GetImage()->GetPixel({ { 0, 0 } })[0], 0);
   EXPECT_EQ(canvas.GetImage()->GetPixel({ { 1, 0 } })[0], 255);

@@ -180,8 +180,8 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
     const int column = static_cast<int>(i % 3) * columns, row = static_cast<int>(i / 3) * (rows + Head);
     canvas.DrawPanel(
       column, row + Head, ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows), { 0.0, 1.1 });
-    canvas.DrawText(
-      column + 8, row + 8, Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
+    canvas.DrawText(Vector2(column + 8, row + 20),
+                    Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
   }
   return canvas.GetImage();
 }
@@ -225,7 +225,7 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
     {
       Panel panel = Radiograph(rows[r].second[static_cast<std::size_t>(i)], geometry);
       canvas.DrawPanel(i * width, top + Head, panel, { 0.0, brightest });
-      canvas.DrawText(i * width + 8, top + 8, Title(rows[r].first, 0, 3.0 * (i - 1)));
+      canvas.DrawText(Vector2(i * width + 8, top + 20), Title(rows[r].first, 0, 3.0 * (i - 1)));
       if (i == 1)
       {
         continue;
@@ -235,8 +235,8 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
         panel.values[k] -= mean.values[k];
       }
       const int column = (i == 0 ? 3 : 4) * width;
-      canvas.DrawDifference(column, top + Head, panel, 0.5 * brightest);
-      canvas.DrawText(column + 8, top + 8, i == 0 ? "-3 SD - MEAN" : "+3 SD - MEAN");
+      canvas.DrawPanel(column, top + Head, panel, { -0.5 * brightest, 0.5 * brightest }, ColorMap::Diverging);
+      canvas.DrawText(Vector2(column + 8, top + 20), i == 0 ? "-3 SD - MEAN" : "+3 SD - MEAN");
     }
   }
   return canvas.GetImage();

@@ -16,28 +16,6 @@ constexpr int Gap = 8;
 constexpr int Caption = 24;
 constexpr int CaptionWidth = 228; // of 19 characters
 
-Color
-ContourColor(const Contour & contour)
-{
-  if (contour.axis)
-  {
-    return { { 80, 220, 80 } };
-  }
-  if (contour.region == Region::Outside)
-  {
-    return { { 255, 60, 255 } };
-  }
-  switch (contour.layer)
-  {
-    case 0:
-      return { { 255, 70, 60 } };
-    case 1:
-      return { { 255, 220, 40 } };
-    default:
-      return { { 60, 210, 255 } };
-  }
-}
-
 void
 DrawContours(Canvas & canvas, const Vector2 & corner, const PlaneView & view, const ContourSlice & slice)
 {
@@ -49,7 +27,7 @@ DrawContours(Canvas & canvas, const Vector2 & corner, const PlaneView & view, co
     {
       canvas.DrawLine(corner + view.Project(contour.points[i]),
                       corner + view.Project(contour.points[(i + 1) % count]),
-                      ContourColor(contour));
+                      StyleOf(contour).color);
     }
   }
 }
@@ -86,7 +64,8 @@ DrawSlices(const CTImage * ct, const ContourStack * stack, const Window & window
     const int  column = Gap + i % columns * (view.columns + Gap);
     const int  row = Gap + i / columns * (view.rows + Caption + Gap);
     view.corner = flatCorner + stack->GetHeight(k) * stack->GetNormal();
-    canvas.DrawText(column, row + 4, "slice " + std::to_string(k) + ", " + Rounded(stack->GetHeight(k)) + " mm");
+    canvas.DrawText(Vector2(column, row + 16),
+                    "slice " + std::to_string(k) + ", " + Rounded(stack->GetHeight(k)) + " mm");
     canvas.DrawPanel(column, row + Caption, SamplePlane(ct, view), window);
     DrawContours(canvas, Vector2(column, row + Caption), view, slices[k]);
   }
@@ -116,12 +95,12 @@ DrawComparison(const Panel &                   reference,
         difference.values[k] = std::nanf(""); // beside the bone on a radiograph
       }
     }
-    canvas.DrawText(Gap, row + 4, referenceName);
+    canvas.DrawText(Vector2(Gap, row + 16), referenceName);
     canvas.DrawPanel(Gap, row + Caption, reference, window);
-    canvas.DrawText(Gap + width, row + 4, levels[i].name);
+    canvas.DrawText(Vector2(Gap + width, row + 16), levels[i].name);
     canvas.DrawPanel(Gap + width, row + Caption, model, window);
-    canvas.DrawText(Gap + 2 * width, row + 4, "model - CT, +-" + Rounded(scale));
-    canvas.DrawDifference(Gap + 2 * width, row + Caption, difference, scale);
+    canvas.DrawText(Vector2(Gap + 2 * width, row + 16), "model - CT, +-" + Rounded(scale));
+    canvas.DrawPanel(Gap + 2 * width, row + Caption, difference, { -scale, scale }, ColorMap::Diverging);
   }
   return canvas.GetImage();
 }
