@@ -8,7 +8,7 @@
 #
 # The foundation depends on itself alone, and within it only the modules named below may be used by a stage; a
 # composition uses foundation, stages and compositions that stand before it.
-set(BONETK_FOUNDATION Core IO Phantom Picture)
+set(BONETK_FOUNDATION Core IO Phantom Picture Report)
 set(BONETK_STAGES Contour Tiling Quality Density Simplification Radiograph Atlas)
 set(BONETK_COMPOSITIONS Model Evaluation Registration Measurement Export)
 set(BONETK_MODULES_ALL ${BONETK_FOUNDATION} ${BONETK_STAGES} ${BONETK_COMPOSITIONS})

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneDescribe.h"
 
+#include "boneDensityEvaluation.h"
 #include "boneLabelChoice.h"
 #include "boneLabelValue.h"
 #include "boneQualityMeasures.h"
@@ -21,17 +22,6 @@ namespace bone
 {
 namespace
 {
-const char *
-RegionName(int region)
-{
-  static const std::map<int, const char *> names = { { Region::Outside, "outside" },
-                                                     { Region::Cortical, "cortical" },
-                                                     { Region::Trabecular, "trabecular" },
-                                                     { Region::Medullary, "medullary" } };
-  const auto                               found = names.find(region);
-  return found == names.end() ? "further layer" : found->second;
-}
-
 /** A row "name    value" with the values in a column. */
 template <typename TValue>
 void

@@ -6,6 +6,7 @@
 
 #include "boneMeshImageMetrics.h"
 #include "boneQualityMeasures.h"
+#include "boneReportPage.h"
 #include "boneResolution.h"
 
 #include <map>
@@ -67,7 +68,15 @@ DescribeLevel(const MeshArrays & mesh);
 std::vector<std::string>
 FindDoubts(const BuildPlanParameters & plan, const std::vector<LevelReport> & levels);
 
-/** The report as a table. */
+/** The bone and how it was built, in a line. */
+std::string
+Headline(const BuildReport & report);
+
+/** The levels' figures, a column a level. */
+PageTable
+LevelTable(const BuildReport & report);
+
+/** The report as text. */
 std::string
 ToText(const BuildReport & report);
 

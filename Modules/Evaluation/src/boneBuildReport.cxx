@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iomanip>
@@ -29,19 +30,18 @@ Fixed(double value, int digits)
   return os.str();
 }
 
-/** One row of the table: a name, and a value for each level. */
+/** Adds a row: a name, and a value for each level. */
 void
-Row(std::ostream &                                          os,
+Row(PageTable &                                             table,
     const BuildReport &                                     report,
     const std::string &                                     name,
     const std::function<std::string(const LevelReport &)> & value)
 {
-  os << std::left << std::setw(34) << name << std::right;
+  table.rows.push_back({ name });
   for (const LevelReport & level : report.levels)
   {
-    os << std::setw(14) << value(level);
+    table.rows.back().push_back(value(level));
   }
-  os << '\n';
 }
 
 std::string
@@ -52,24 +52,22 @@ RegionVolume(const LevelReport & level, int region)
 }
 
 void
-WriteSurfaceRows(std::ostream & os, const BuildReport & report)
+AddSurfaceRows(PageTable & table, const BuildReport & report)
 {
-  const auto distance = [](const LevelReport & level, bool toMask) {
-    return toMask ? level.distances->meshToMask : level.distances->maskToMesh;
-  };
   if (report.levels.empty() || !report.levels.front().distances)
   {
     return;
   }
-  Row(os, report, "Dice with the label", [](const LevelReport & l) { return Fixed(*l.dice, 4); });
-  Row(os, report, "mesh to label, mean (mm)", [&](const LevelReport & l) { return Fixed(distance(l, true).mean, 3); });
-  Row(os, report, "mesh to label, 95 % (mm)", [&](const LevelReport & l) {
-    return Fixed(distance(l, true).percentile95, 3);
-  });
-  Row(os, report, "label to mesh, mean (mm)", [&](const LevelReport & l) { return Fixed(distance(l, false).mean, 3); });
-  Row(os, report, "label to mesh, 95 % (mm)", [&](const LevelReport & l) {
-    return Fixed(distance(l, false).percentile95, 3);
-  });
+  Row(table, report, "Dice with the label", [](const LevelReport & l) { return Fixed(*l.dice, 4); });
+  for (const bool toMask : { true, false })
+  {
+    const std::string way = toMask ? "mesh to label" : "label to mesh";
+    const auto        distance = [toMask](const LevelReport & level) {
+      return toMask ? level.distances->meshToMask : level.distances->maskToMesh;
+    };
+    Row(table, report, way + ", mean (mm)", [&](const LevelReport & l) { return Fixed(distance(l).mean, 3); });
+    Row(table, report, way + ", 95 % (mm)", [&](const LevelReport & l) { return Fixed(distance(l).percentile95, 3); });
+  }
 }
 
 nlohmann::ordered_json
@@ -199,35 +197,61 @@ DescribeLevel(const MeshArrays & mesh)
 }
 
 std::string
-ToText(const BuildReport & report)
+Headline(const BuildReport & report)
 {
-  std::ostringstream           os;
   const DensityFitParameters & fit = report.parameters.fit;
-  os << report.files.image << (report.files.labelName.empty() ? "" : ", " + report.files.labelName) << ": "
-     << report.slices << " slices, on average " << Fixed(report.meanSliceDistance, 2)
-     << " mm apart, contour points at most " << Fixed(report.resolution.contourSpacing, 2) << " mm apart, degree "
-     << fit.degree << (fit.continuous ? ", continuous" : "") << "\n\n";
-  int level = 0;
-  Row(os, report, "", [&level](const LevelReport &) { return "level " + std::to_string(++level); });
-  Row(os, report, "tetrahedra", [](const LevelReport & l) { return std::to_string(l.tetrahedra); });
-  Row(os, report, "points", [](const LevelReport & l) { return std::to_string(l.points); });
-  Row(os, report, "valid", [](const LevelReport & l) { return std::string(l.valid ? "yes" : "NO"); });
-  Row(os, report, "volume (mm^3)", [](const LevelReport & l) { return Fixed(l.volume, 0); });
-  Row(os, report, "  cortical (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Cortical); });
-  Row(os, report, "  trabecular (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Trabecular); });
-  Row(os, report, "  medullary (mm^3)", [](const LevelReport & l) { return RegionVolume(l, Region::Medullary); });
-  Row(os, report, "dihedral angle, least (deg)", [](const LevelReport & l) {
+  return report.files.image + (report.files.labelName.empty() ? "" : ", " + report.files.labelName) + ": " +
+         std::to_string(report.slices) + " slices, on average " + Fixed(report.meanSliceDistance, 2) +
+         " mm apart, contour points at most " + Fixed(report.resolution.contourSpacing, 2) + " mm apart, degree " +
+         std::to_string(fit.degree) + (fit.continuous ? ", continuous" : "");
+}
+
+PageTable
+LevelTable(const BuildReport & report)
+{
+  PageTable table{ "", { "" }, {} };
+  for (std::size_t level = 1; level <= report.levels.size(); ++level)
+  {
+    table.header.push_back("level " + std::to_string(level));
+  }
+  Row(table, report, "tetrahedra", [](const LevelReport & l) { return std::to_string(l.tetrahedra); });
+  Row(table, report, "points", [](const LevelReport & l) { return std::to_string(l.points); });
+  Row(table, report, "valid", [](const LevelReport & l) { return std::string(l.valid ? "yes" : "NO"); });
+  Row(table, report, "volume (mm^3)", [](const LevelReport & l) { return Fixed(l.volume, 0); });
+  for (const int region : { Region::Cortical, Region::Trabecular, Region::Medullary })
+  {
+    Row(table, report, std::string("  ") + RegionName(region) + " (mm^3)", [region](const LevelReport & l) {
+      return RegionVolume(l, region);
+    });
+  }
+  Row(table, report, "dihedral angle, least (deg)", [](const LevelReport & l) {
     return Fixed(l.dihedral.minimum * Degrees, 1);
   });
-  Row(os, report, "dihedral angle, mean least (deg)", [](const LevelReport & l) {
+  Row(table, report, "dihedral angle, mean least (deg)", [](const LevelReport & l) {
     return Fixed(l.dihedral.mean * Degrees, 1);
   });
-  WriteSurfaceRows(os, report);
-  Row(os, report, "mean density", [](const LevelReport & l) { return Fixed(l.meanDensity, 1); });
-  Row(os, report, "density error (% of range)", [](const LevelReport & l) {
+  AddSurfaceRows(table, report);
+  Row(table, report, "mean density", [](const LevelReport & l) { return Fixed(l.meanDensity, 1); });
+  Row(table, report, "density error (% of range)", [](const LevelReport & l) {
     return Fixed(l.density.meanAbsolutePercent, 2);
   });
-  Row(os, report, "radiograph difference (%)", [](const LevelReport & l) { return Fixed(l.radiographPercent, 2); });
+  Row(table, report, "radiograph difference (%)", [](const LevelReport & l) { return Fixed(l.radiographPercent, 2); });
+  return table;
+}
+
+std::string
+ToText(const BuildReport & report)
+{
+  std::ostringstream os;
+  const PageTable    table = LevelTable(report);
+  const auto         print = [&os](const std::vector<std::string> & row) {
+    os << std::left << std::setw(34) << row.front() << std::right;
+    std::for_each(row.begin() + 1, row.end(), [&os](const std::string & cell) { os << std::setw(14) << cell; });
+    os << '\n';
+  };
+  os << Headline(report) << "\n\n";
+  print(table.header);
+  std::for_each(table.rows.begin(), table.rows.end(), print);
   os << "\nseconds:";
   double total = 0.0;
   for (const auto & [name, seconds] : report.times)

@@ -51,6 +51,15 @@ struct RegionDensity
   double      standardDeviation{ 0.0 }; ///< of the density over the region's volume
 };
 
+/** "cortical", "trabecular", "medullary"; "outside", and "further layer" for those deeper than the cavity. */
+const char *
+RegionName(int region);
+
+/** The unit of density values for people: that of DensityQuantityName, or "density units" where the quantity is not
+ * known. */
+std::string
+DensityUnitName(DensityQuantity quantity);
+
 /** One entry for each region that occurs, ascending; a mesh without regions is one region 0. Exact up to rounding: the
  * integrals are those of \ref Bernstein. Throws std::invalid_argument where the mesh holds no density. */
 std::vector<RegionDensity>

@@ -132,6 +132,30 @@ DensityProfile(const MeshArrays &   mesh,
   return profile;
 }
 
+const char *
+RegionName(int region)
+{
+  switch (region)
+  {
+    case Region::Outside:
+      return "outside";
+    case Region::Cortical:
+      return "cortical";
+    case Region::Trabecular:
+      return "trabecular";
+    case Region::Medullary:
+      return "medullary";
+    default:
+      return "further layer";
+  }
+}
+
+std::string
+DensityUnitName(DensityQuantity quantity)
+{
+  return quantity == DensityQuantity::Unknown ? "density units" : DensityQuantityName(quantity);
+}
+
 std::vector<RegionDensity>
 MeasureRegions(const MeshArrays & mesh)
 {
