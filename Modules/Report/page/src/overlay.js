@@ -1,0 +1,35 @@
+// What stands over or beside a picture: scale bar and colour bar.
+import { densityGradient } from './colours.js';
+import { element } from './dom.js';
+import { formatNumber, roundStep, ticks } from './numbers.js';
+
+/** A scale bar of 1, 2 or 5 times a power of ten mm, at most a quarter of the picture wide. */
+export class ScaleBar {
+  constructor() {
+    this.text = element('span');
+    this.node = element('div', { className: 'scale-bar' }, this.text);
+  }
+
+  update(millimetresPerPixel, width) {
+    const length = roundStep(millimetresPerPixel * Math.max(40, width / 4));
+    this.node.style.width = `${length / millimetresPerPixel}px`;
+    this.text.textContent = `${length} mm`;
+  }
+}
+
+/**
+ * A horizontal colour bar with numbers, quantity and unit. gradient: a CSS gradient from left to right, the density's
+ * colours by default.
+ */
+export function colourBar({ quantity, unit, range }, gradient = densityGradient()) {
+  const { values, decimals } = ticks(range, 5);
+  const marks = values.map((value) => {
+    const share = range[1] > range[0] ? (value - range[0]) / (range[1] - range[0]) : 0.5;
+    return element('span', { className: 'tick', style: `left: ${(100 * share).toFixed(2)}%` },
+      formatNumber(value, decimals));
+  });
+  return element('div', { className: 'colour-bar' },
+    element('div', { className: 'colour-bar-title' }, unit ? `${quantity} (${unit})` : quantity),
+    element('div', { className: 'colour-bar-strip', style: `background: ${gradient}` }),
+    element('div', { className: 'colour-bar-ticks' }, ...marks));
+}

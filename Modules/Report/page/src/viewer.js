@@ -1,0 +1,353 @@
+// The 3D view of a mesh with its controls: regions, colours, cut, contours, landmarks and the camera.
+import { decodeArray } from './arrays.js';
+import { coloursOfDensities, coloursOfRegions, parseHexColour, regionColour } from './colours.js';
+import { planeCut } from './cut.js';
+import { button, checkbox, element, group, oncePerFrame, select, slider } from './dom.js';
+import { bindInteraction, hint } from './interaction.js';
+import { formatNumber, roundStep } from './numbers.js';
+import { colourBar, ScaleBar } from './overlay.js';
+import { Scene, viewsByName } from './scene.js';
+import { regionSurface } from './surface.js';
+
+const planesByName = {
+  axial: { normal: [0, 0, 1], axis: 'z' },
+  coronal: { normal: [0, 1, 0], axis: 'y' },
+  sagittal: { normal: [1, 0, 0], axis: 'x' }
+};
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+
+export class Viewer {
+  /**
+   * Fills `container`. description: unit, quantity, range and regions of the page's model or atlas. prefix: what the
+   * controls' ids begin with, where a page has two viewers.
+   */
+  constructor(container, description, prefix = '') {
+    this.description = description;
+    this.prefix = prefix;
+    this.regions = Object.entries(description.regions)
+      .map(([number, name]) => ({ number: Number(number), name, isShown: true, opacity: 1 }));
+    this.plane = { name: 'axial', normal: planesByName.axial.normal, position: 0, isOn: false };
+    this.resolution = 4;
+    this.isColouredByDensity = true;
+    this.hasCellEdges = false;
+    this.frames = 0;
+    this.build(container);
+    this.updateCut = oncePerFrame(() => this.computeCut());
+  }
+
+  build(container) {
+    this.stage = element('div', { className: 'stage', id: `${this.prefix}view3d` });
+    this.labels = element('div', { className: 'labels' });
+    this.scaleBar = new ScaleBar();
+    this.bar = colourBar(this.description);
+    this.controls = element('div', { className: 'controls' });
+    container.className = 'viewer';
+    container.append(
+      element('div', { className: 'viewer-picture' }, this.stage, this.bar, element('p', { className: 'hint' }, hint)),
+      this.controls);
+    try {
+      this.scene = new Scene(this.stage, () => this.drawOverlay());
+    } catch (error) {
+      this.stage.replaceWith(element('p', { className: 'notice' }, error.message));
+      throw error;
+    }
+    this.stage.append(this.labels, this.scaleBar.node);
+    const { canvas } = this.scene;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', 'Model in three dimensions; arrow keys turn it, plus and minus zoom');
+    bindInteraction(this.scene, { onTurn: () => this.turned(), onFit: () => this.fit() });
+    const scheme = matchMedia('(prefers-color-scheme: dark)');
+    for (const query of [scheme, matchMedia('print')]) {
+      query.addEventListener('change', () => this.applyTheme());
+    }
+    this.applyTheme();
+    this.addControls();
+  }
+
+  id(name) {
+    return this.prefix + name;
+  }
+
+  addControls() {
+    const views = Object.keys(viewsByName).map((name) => button(capital(name), () => this.lookFrom(name)));
+    this.controls.append(
+      group('View', element('div', { className: 'buttons' }, ...views)),
+      group('Regions', ...this.regions.map((region) => this.regionRow(region)), this.colourRow()),
+      this.cutGroup());
+  }
+
+  regionRow(region) {
+    const { control, row } = checkbox(this.id(`region-${region.number}`), region.name, true, (isShown) => {
+      region.isShown = isShown;
+      this.showRegions();
+      this.updateCut();
+    });
+    region.control = control;
+    const opacity = element('input', {
+      type: 'range', id: this.id(`opacity-${region.number}`), min: 0, max: 100, step: 5, value: 100, title: 'Opacity',
+      'aria-label': `Opacity of ${region.name}, per cent`
+    });
+    opacity.addEventListener('input', () => {
+      region.opacity = opacity.valueAsNumber / 100;
+      this.showRegions();
+    });
+    const swatch = element('span', {
+      className: 'swatch', style: `background: rgb(${regionColour(region.number).join(' ')})`, 'aria-hidden': 'true'
+    });
+    row.append(swatch, opacity);
+    return row;
+  }
+
+  colourRow() {
+    const { control, row } = select(this.id('colour'), 'Colour by',
+      [['density', this.description.quantity], ['region', 'Region']], (value) => {
+        this.isColouredByDensity = value === 'density';
+        this.recolour();
+      });
+    this.colourControl = control;
+    return row;
+  }
+
+  cutGroup() {
+    const onOff = checkbox(this.id('cut-on'), 'Show a cut', false, (isOn) => this.setCutOn(isOn));
+    this.cutOnControl = onOff.control;
+    const orientation = select(this.id('cut-orientation'), 'Orientation',
+      [['axial', 'Axial'], ['coronal', 'Coronal'], ['sagittal', 'Sagittal'], ['free', 'Free (as seen now)']],
+      (name) => this.orientCut(name));
+    this.alignControl = button('Cut as seen now', () => this.orientCut('free'), { id: this.id('cut-align') });
+    this.alignControl.hidden = true;
+    this.cutSlider = slider(this.id('cut'), 'Position',
+      { min: 0, max: 1, step: 1, value: 0, say: (mm) => this.sayPosition(mm), live: true }, (mm) => {
+        this.plane.position = mm;
+        this.setCutOn(true);
+      });
+    this.resolutionSlider = slider(this.id('cut-resolution'), 'Colours within a cell',
+      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} \u00d7 finer` }, (n) => {
+        this.resolution = n;
+        this.updateCut();
+      });
+    const edges = checkbox(this.id('cut-edges'), 'Edges of the cells', false, (isOn) => {
+      this.hasCellEdges = isOn;
+      this.updateCut();
+    });
+    return group('Cut', onOff.row, orientation.row, this.alignControl, this.cutSlider.row, this.resolutionSlider.row,
+      edges.row);
+  }
+
+  sayPosition(mm) {
+    const axis = planesByName[this.plane.name]?.axis ?? 'depth';
+    return `${axis} = ${formatNumber(mm, 1)} mm`;
+  }
+
+  /** Lets the user choose among levels; choose(index) is called. */
+  addLevels(names, choose) {
+    const { control, row } = select(this.id('level'), 'Level', names.map((name, i) => [String(i), name]),
+      (value) => choose(Number(value)));
+    this.levelControl = control;
+    this.levelText = element('p', { className: 'remark' });
+    this.controls.prepend(group('Detail', row, this.levelText));
+  }
+
+  /** Adds the page's contours and landmarks, with a checkbox each. */
+  async addExtras(contours = [], landmarks = []) {
+    const rows = [];
+    for (const contour of contours) {
+      const [counts, closed, points] =
+        await Promise.all([contour.counts, contour.closed, contour.points].map(decodeArray));
+      const name = `${contour.name} contours`;
+      this.scene.addContours(name, parseHexColour(contour.color), points, polylines(counts, closed));
+      this.scene.setContoursShown(name, false);
+      const { row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false,
+        (isShown) => this.scene.setContoursShown(name, isShown));
+      row.append(element('span', { className: 'swatch', style: `background: ${contour.color}`, 'aria-hidden': 'true' }));
+      rows.push(row);
+    }
+    if (landmarks.length > 0) {
+      rows.push(this.landmarksRow(landmarks));
+    }
+    if (rows.length > 0) {
+      this.controls.append(group('Also show', ...rows));
+    }
+  }
+
+  landmarksRow(landmarks) {
+    this.landmarks = landmarks.map(({ name, position }) => ({ position, label: element('span', {}, name) }));
+    this.labels.append(...this.landmarks.map(({ label }) => label));
+    const [left, right, front, back, low, high] = this.bounds();
+    const radius = 0.008 * Math.hypot(right - left, back - front, high - low);
+    landmarks.forEach(({ position }) => this.scene.addLandmark(position, radius, [0.86, 0.2, 0.18]));
+    const { row } = checkbox(this.id('landmarks'), 'Landmarks', false, (isShown) => this.showLandmarks(isShown));
+    this.showLandmarks(false);
+    return row;
+  }
+
+  showLandmarks(isShown) {
+    this.labels.hidden = !isShown;
+    this.scene.setLandmarksShown(isShown);
+  }
+
+  bounds() {
+    return [[1, 0, 0], [0, 1, 0], [0, 0, 1]].flatMap((axis) => this.mesh.extent(axis));
+  }
+
+  /** Shows a mesh. isMoved: the mesh is the one before with other points or densities. */
+  setMesh(mesh, isMoved = false) {
+    const isFirst = !this.mesh;
+    this.mesh = mesh;
+    if (!mesh.hasDensity) {
+      this.isColouredByDensity = false;
+      this.colourControl.value = 'region';
+      this.colourControl.disabled = true;
+    }
+    this.computeSurfaces();
+    if (!isMoved) {
+      this.setCutRange();
+    }
+    if (isFirst) {
+      this.scene.resize();
+      this.lookFrom('anterior');
+      this.fit();
+    }
+    if (this.levelText) {
+      this.levelText.textContent =
+        `${mesh.cellCount.toLocaleString('en')} cells, ${(mesh.points.length / 3).toLocaleString('en')} points`;
+    }
+    this.updateCut();
+  }
+
+  computeSurfaces() {
+    const isCurved = this.mesh.hasDensity && this.mesh.degrees.some((degree) => degree > 1);
+    for (const region of this.regions) {
+      region.surface = regionSurface(this.mesh, region.number, isCurved ? 2 : 1);
+      this.scene.setSurface(region.number, region.surface, this.coloursOf(region.surface, region.number));
+    }
+    this.showRegions();
+  }
+
+  coloursOf({ densities, regions }, region) {
+    return this.isColouredByDensity
+      ? coloursOfDensities(densities, this.description.range)
+      : coloursOfRegions(regions ?? new Uint8Array(densities.length).fill(region));
+  }
+
+  recolour() {
+    this.bar.classList.toggle('is-unused', !this.isColouredByDensity);
+    for (const region of this.regions) {
+      this.scene.setSurface(region.number, region.surface, this.coloursOf(region.surface, region.number));
+    }
+    this.updateCut();
+  }
+
+  showRegions() {
+    this.regions.forEach(({ number, isShown, opacity }) => this.scene.setRegion(number, isShown, opacity));
+  }
+
+  /** Fits the position slider to the mesh along the plane's normal. */
+  setCutRange() {
+    const [low, high] = this.mesh.extent(this.plane.normal);
+    const step = roundStep((high - low) / 200);
+    const { control } = this.cutSlider;
+    const isInside = this.plane.isOn && this.plane.position > low && this.plane.position < high;
+    const position = isInside ? this.plane.position : (low + high) / 2;
+    Object.assign(control, { min: Math.floor(low / step) * step, max: Math.ceil(high / step) * step, step });
+    control.value = position;
+    this.plane.position = control.valueAsNumber;
+    this.cutSlider.show();
+  }
+
+  setCutOn(isOn) {
+    if (isOn && !this.plane.isOn) {
+      this.turnTowardsCut();
+    }
+    this.plane.isOn = isOn;
+    this.cutOnControl.checked = isOn;
+    this.updateCut();
+  }
+
+  orientCut(name) {
+    this.plane.name = name;
+    this.plane.normal = name === 'free' ? this.scene.direction() : planesByName[name].normal;
+    this.plane.isOn = false;
+    this.alignControl.hidden = name !== 'free';
+    this.setCutRange();
+    this.setCutOn(true);
+  }
+
+  /** Turns the camera where it sees the cut edge-on. */
+  turnTowardsCut() {
+    const { name, normal } = this.plane;
+    if (Math.abs(dot(normal, this.scene.direction())) < 0.2) {
+      this.scene.turn(name === 'sagittal' ? 50 : 0, name === 'sagittal' ? 0 : 50);
+      if (Math.abs(dot(normal, this.scene.direction())) < 0.2) {
+        this.scene.turn(50, 35);
+      }
+    }
+  }
+
+  computeCut() {
+    if (!this.plane.isOn) {
+      this.cut = null;
+      this.scene.setCut(null);
+      return;
+    }
+    const shown = new Set(this.regions.filter((region) => region.isShown).map((region) => region.number));
+    const { normal, position } = this.plane;
+    this.cut = planeCut(this.mesh, normal, position, (region) => shown.has(region), this.resolution);
+    const origin = normal.map((component) => component * position);
+    this.clippedSide = dot(normal, this.scene.direction()) >= 0 ? 1 : -1;
+    this.scene.setCut(this.cut, this.coloursOf(this.cut), this.hasCellEdges, origin,
+      normal.map((component) => component * this.clippedSide));
+  }
+
+  /** Clips away the side of the cut that has come to lie in front. */
+  turned() {
+    const towards = this.plane.isOn ? dot(this.plane.normal, this.scene.direction()) : 0;
+    if (towards * this.clippedSide < -0.02) {
+      this.updateCut();
+    }
+  }
+
+  lookFrom(name) {
+    this.scene.lookFrom(name);
+    this.turned();
+  }
+
+  fit() {
+    this.scene.fit(this.bounds());
+  }
+
+  applyTheme() {
+    const channels = getComputedStyle(this.stage).backgroundColor.match(/[\d.]+/g).map(Number);
+    this.scene.setBackground(channels.slice(0, 3).map((channel) => channel / 255));
+  }
+
+  drawOverlay() {
+    const { width } = this.stage.getBoundingClientRect();
+    this.scaleBar.update(this.scene.millimetresPerPixel(), width);
+    for (const { position, label } of this.landmarks ?? []) {
+      const [x, y] = this.scene.project(position);
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    }
+    this.onFrame?.();
+  }
+}
+
+/** vtk's cells of polylines of `counts` points each, closed ones back to their first point. */
+function polylines(counts, closed) {
+  const cells = [];
+  let begin = 0;
+  counts.forEach((count, line) => {
+    const isClosed = closed[line] !== 0;
+    cells.push(count + (isClosed ? 1 : 0));
+    for (let i = 0; i < count; ++i) {
+      cells.push(begin + i);
+    }
+    if (isClosed) {
+      cells.push(begin);
+    }
+    begin += count;
+  });
+  return Uint32Array.from(cells);
+}
