@@ -73,14 +73,13 @@ void
 DrawModes(const bone::StatisticalModel & model,
           const std::string &            folder,
           const bone::Vector3 &          look,
-          const bone::Vector3 &          up)
+          const bone::Vector3 &          up,
+          bool                           letters = true)
 {
-  const auto shapes = bone::DrawShapeModes(model, 2, look, up);
-  bone::WriteImage(shapes.GetPointer(), folder + "/shape_modes.png");
+  bone::DrawShapeModes(model, 2, look, up, letters).Write(folder + "/shape_modes.png");
   if (model.HasDensity())
   {
-    const auto radiographs = bone::DrawRadiographModes(model, look, up);
-    bone::WriteImage(radiographs.GetPointer(), folder + "/radiograph_modes.png");
+    bone::DrawRadiographModes(model, look, up, letters).Write(folder + "/radiograph_modes.png");
   }
 }
 
@@ -89,7 +88,8 @@ Train(bone::PopulationRegistration &                population,
       const std::vector<std::function<Subject()>> & subjects,
       const std::string &                           folder,
       const bone::Vector3 &                         look,
-      const bone::Vector3 &                         up)
+      const bone::Vector3 &                         up,
+      bool                                          letters = true)
 {
   auto set = bone::MeshTrainingSet<>::New();
   for (const auto & make : subjects)
@@ -107,7 +107,7 @@ Train(bone::PopulationRegistration &                population,
   estimator->Update();
   const auto * model = estimator->GetOutput();
   bone::WriteStatisticalModel(model, folder + "/atlas.h5");
-  DrawModes(*model, folder, look, up);
+  DrawModes(*model, folder, look, up, letters);
   std::cout << model->GetContent().shape.GetNumberOfModes() << " modes of shape, "
             << model->GetContent().density.GetNumberOfModes() << " of density\n";
 }
@@ -147,7 +147,8 @@ TrainSurfaces(const std::string & folder, const std::vector<std::string> & files
       return Subject{ std::filesystem::path(file).stem().string(), {}, surface, ScanSurface(surface)->GetOutput() };
     });
   }
-  Train(population, subjects, folder, bone::Vector3::UnitY(), bone::Vector3::UnitX());
+  // x runs along the bone, not to the patient's left.
+  Train(population, subjects, folder, bone::Vector3::UnitY(), bone::Vector3::UnitX(), /* letters */ false);
 }
 } // namespace
 

@@ -233,7 +233,8 @@ void
 WriteRegistrationPictures(const std::vector<PreparedView> & views,
                           const MeshArrays &                model,
                           const RigidPose &                 pose,
-                          const std::string &               output)
+                          const std::string &               output,
+                          const Eigen::Matrix3d &           patientAxes)
 {
   for (std::size_t v = 0; v < views.size(); ++v)
   {
@@ -243,7 +244,7 @@ WriteRegistrationPictures(const std::vector<PreparedView> & views,
     xray.view = views[v].geometry->GetView();
     xray.values.assign(pixels, pixels + xray.GetNumberOfPixels());
     xray.weights.assign(weights, weights + xray.GetNumberOfPixels());
-    WriteImage(DrawRegistration(xray, model, pose).GetPointer(), PictureNameOf(output, v));
+    DrawRegistration(xray, model, pose, patientAxes).Write(PictureNameOf(output, v));
   }
 }
 } // namespace bone

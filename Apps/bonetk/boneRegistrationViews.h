@@ -78,7 +78,8 @@ void
 WriteRegistrationPictures(const std::vector<PreparedView> & views,
                           const MeshArrays &                model,
                           const RigidPose &                 pose,
-                          const std::string &               output);
+                          const std::string &               output,
+                          const Eigen::Matrix3d &           patientAxes = Eigen::Matrix3d::Identity());
 
 /** Sets the members SearchTranslation and SearchRotation of a registration's parameters. */
 template <typename TParameters>

@@ -104,9 +104,9 @@ WriteOutputs(const Evaluation &  evaluation,
   {
     WriteImage(pipeline.GetRadiograph(level)->GetOutput(), in("drr_L" + std::to_string(level + 1) + ".mha"));
   }
-  WriteImage(evaluation.slices, in("slices.png"));
-  WriteImage(evaluation.cutPlane, in("cut_plane.png"));
-  WriteImage(evaluation.radiographs, in("radiographs.png"));
+  evaluation.slices.Write(in("slices.png"));
+  evaluation.cutPlane.Write(in("cut_plane.png"));
+  evaluation.radiographs.Write(in("radiographs.png"));
   WriteFileAtomically(in("report.txt"), ToText(report));
   WriteFileAtomically(in("report.json"), ToJson(report));
   static const std::regex ofALevel("(model|drr)_L[0-9]+\\.(vtu|mha)");
@@ -215,7 +215,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
 
   Lap              lap;
-  const Evaluation evaluation = Evaluate(pipeline, { input.ct, input.mask });
+  const Evaluation evaluation = Evaluate(pipeline, { input.ct, input.mask, ct });
   report.times.emplace_back("evaluation", lap());
   pipeline.GetParameters(parameters);
   report.parameters = parameters;

@@ -136,7 +136,8 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   report["xrays"] = options.views.xrays;
   report["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   WriteFileAtomically(options.output + ".json", report.dump(1) + "\n");
-  WriteRegistrationPictures(views, result.mesh, RigidPose(), options.output);
+  // The mesh lies in the views' space: the patient is turned there as the atlas was.
+  WriteRegistrationPictures(views, result.mesh, RigidPose(), options.output, result.pose.rotation);
   PrintDeformation(options.model, report, session);
   if (result.quality != RegistrationQuality::Ok)
   {

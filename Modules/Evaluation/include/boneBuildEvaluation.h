@@ -14,15 +14,17 @@ struct Evidence
 {
   CTImage::ConstPointer    ct;
   LabelImage::ConstPointer mask; ///< 1 in the bone; null: the voxels inside the model's finest level
+  /** The CT as it is in its file, where `ct` is a part of it: the pictures tell its slices; null: `ct` is all. */
+  itk::ImageBase<3>::ConstPointer whole;
 };
 
 /** The measurements of a built model and the pictures made on the way. */
 struct Evaluation
 {
   std::vector<LevelReport> levels;
-  PictureImage::Pointer    slices;
-  PictureImage::Pointer    cutPlane;
-  PictureImage::Pointer    radiographs;
+  Canvas                   slices;      ///< of the CT with contours
+  Canvas                   cutPlane;    ///< the CT and the levels in the plane of the bone's largest extent
+  Canvas                   radiographs; ///< of the CT and the levels, in the pipeline's view and from the side
 };
 
 /** Compares each level of an up-to-date pipeline with the CT, by volume, surface, density and radiograph. The

@@ -23,14 +23,19 @@ ShadeSurface(const TriangleSurface & surface,
              int                     rows);
 
 /** The paper's Figure 14 a: exterior surfaces at -3, 0 and +3 standard deviations of the first modes of shape, a row a
- * mode. `direction`: of the look; `up`: of the picture. */
-PictureImage::Pointer
-DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direction, const Vector3 & up);
+ * mode. `direction`: of the look; `up`: of the picture, unit vectors at right angles. `letters`: whether the model lies
+ * in the patient's axes (LPS), whose letters are then drawn. */
+Canvas
+DrawShapeModes(const StatisticalModel & model,
+               int                      modes,
+               const Vector3 &          direction,
+               const Vector3 &          up,
+               bool                     letters = true);
 
 /** The paper's Figure 14 b: radiographs at -3, 0 and +3 standard deviations of the first mode of shape, and, where
  * there is a density, of its first mode; beside each its difference to the mean's. */
-PictureImage::Pointer
-DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up);
+Canvas
+DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up, bool letters = true);
 } // namespace bone
 
 #endif

@@ -3,8 +3,12 @@
  *=========================================================================*/
 #include "boneBuildEvaluation.h"
 
+#include "boneBuildPlan.h"
+#include "boneDensityEvaluation.h"
 #include "boneDensityImageFilter.h"
+#include "boneTicks.h"
 #include "boneVoxelDRRImageFilter.h"
+#include "boneXRayPicture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,13 +62,72 @@ RadiographOfCT(const CTImage * ct, const LabelImage * mask, const XRayGeometry *
 std::string
 LevelName(std::size_t level, const LevelReport & report)
 {
-  return "L" + std::to_string(level + 1) + ", " + std::to_string(report.tetrahedra) + " tetra";
+  return "level " + std::to_string(level + 1) + ": " + std::to_string(report.tetrahedra) + " tetrahedra";
 }
 
-double
-LargestValue(const Panel & panel)
+/** One view of the radiographs. */
+struct RadiographPanels
 {
-  return *std::max_element(panel.values.begin(), panel.values.end());
+  XRayGeometry::ConstPointer geometry;
+  CTImage::Pointer           reference; ///< of the CT
+  std::vector<LevelPanel>    levels;
+};
+
+/** A level's radiograph in another view than the pipeline's. */
+CTImage::Pointer
+RadiographOfLevel(const MeshType * mesh, const XRayGeometry * geometry, const BuildPipeline::RadiographType & like)
+{
+  auto filter = BuildPipeline::RadiographType::New();
+  filter->SetInput(mesh);
+  filter->SetParameters(like.GetParameters());
+  filter->SetParameters(like.GetRadiographParameters());
+  filter->SetGeometry(geometry);
+  filter->Update();
+  return filter->GetOutput();
+}
+
+Comparison
+CompareRadiographs(const RadiographPanels & panels, const Vector3 & centre, const std::string & unit)
+{
+  const auto & view = panels.geometry->GetView();
+  Comparison   comparison;
+  comparison.title = DescribeView(view);
+  comparison.letters = LettersOf(view);
+  comparison.pixelSize = PixelSizeAt(view, centre);
+  comparison.scaleNote = "at the bone";
+  comparison.reference = ToPanel(panels.reference);
+  comparison.levels = panels.levels;
+  const auto & values = comparison.reference.values;
+  const double largest = *std::max_element(values.begin(), values.end());
+  comparison.window = { 0.0, RoundInRange(0.9 * largest, largest) };
+  comparison.scale = RoundInRange(0.1 * largest, largest);
+  comparison.unit = unit;
+  return comparison;
+}
+
+Comparison
+CompareCut(const PlaneView & cut, const CTImage * ct, std::vector<LevelPanel> levels, const Window & window)
+{
+  Comparison    comparison;
+  const Vector3 middle = cut.corner + 0.5 * cut.pixel * ((cut.columns - 1.0) * cut.right + (cut.rows - 1.0) * cut.down);
+  comparison.title = DescribePlane(cut.right.cross(cut.down), middle);
+  comparison.letters = cut.Letters();
+  comparison.pixelSize = Vector2::Constant(cut.pixel);
+  comparison.reference = SamplePlane(ct, cut);
+  comparison.levels = std::move(levels);
+  comparison.window = window;
+  return comparison;
+}
+
+Vector3
+MeanOf(const std::vector<Vector3> & points)
+{
+  Vector3 sum = Vector3::Zero();
+  for (const Vector3 & p : points)
+  {
+    sum += p;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
 }
 } // namespace
 
@@ -76,10 +139,10 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   Evaluation   evaluation;
 
   LabelImage::ConstPointer mask = evidence.mask;
-  PlaneView                cut = FrameLargestCut(finest.points, 5.0, 420);
+  const PlaneView          cut = FrameLargestCut(finest.points, 5.0, 420);
   std::vector<LevelPanel>  cuts;
-  std::vector<LevelPanel>  radiographs;
-  CTImage::Pointer         reference;
+  RadiographPanels         front, side;
+  side.geometry = LateralView(levels.front().mesh);
   for (std::size_t i = 0; i < levels.size(); ++i)
   {
     const MeshType *       mesh = levels[i].mesh;
@@ -102,26 +165,34 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
 
     BuildPipeline::RadiographType * radiograph = pipeline.GetRadiograph(i);
     radiograph->Update();
-    if (reference.IsNull())
+    if (i == 0)
     {
-      reference = RadiographOfCT(evidence.ct, mask, radiograph->GetGeometry());
+      front.geometry = radiograph->GetGeometry();
+      front.reference = RadiographOfCT(evidence.ct, mask, front.geometry);
+      side.reference = RadiographOfCT(evidence.ct, mask, side.geometry);
     }
-    report.radiographPercent = RadiographDifferencePercent(reference, radiograph->GetOutput());
+    report.radiographPercent = RadiographDifferencePercent(front.reference, radiograph->GetOutput());
     const std::string name = LevelName(i, report);
-    radiographs.push_back({ name, ToPanel(radiograph->GetOutput()) });
+    front.levels.push_back({ name, ToPanel(radiograph->GetOutput()) });
+    side.levels.push_back({ name, ToPanel(RadiographOfLevel(mesh, side.geometry, *radiograph)) });
     cuts.push_back({ name, ToPanel(Voxelize(mesh, MakePlaneImage(cut))) });
     evaluation.levels.push_back(std::move(report));
   }
 
-  const auto   percentiles = PercentileRange(evidence.ct, mask);
-  const double range = percentiles[1] - percentiles[0];
-  const Window window{ percentiles[0] - 0.3 * range, percentiles[1] + 0.05 * range };
-  evaluation.slices = DrawSlices(evidence.ct, pipeline.GetMedialAxis()->GetOutput(), window);
-  const double cutScale = 0.25 * range;
-  evaluation.cutPlane = DrawComparison(SamplePlane(evidence.ct, cut), "CT", cuts, window, cutScale);
-  const Panel  panel = ToPanel(reference);
-  const double largest = LargestValue(panel);
-  evaluation.radiographs = DrawComparison(panel, "CT", radiographs, { 0.0, 0.9 * largest }, 0.1 * largest);
+  const auto        percentiles = PercentileRange(evidence.ct, mask);
+  const double      range = percentiles[1] - percentiles[0];
+  const std::string unit = DensityUnitName(finest.quantity);
+  const Window      window{ RoundInRange(percentiles[0] - 0.3 * range, range),
+                       RoundInRange(percentiles[1] + 0.05 * range, range) };
+  evaluation.slices = DrawSlices(evidence.ct, pipeline.GetMedialAxis()->GetOutput(), window, unit, evidence.whole);
+  Comparison comparison = CompareCut(cut, evidence.ct, std::move(cuts), window);
+  comparison.scale = RoundInRange(0.25 * range, range);
+  comparison.unit = unit;
+  evaluation.cutPlane = DrawComparison({ comparison });
+  const Vector3     centre = MeanOf(finest.points);
+  const std::string integral = unit + "\u00B7mm";
+  evaluation.radiographs =
+    DrawComparison({ CompareRadiographs(front, centre, integral), CompareRadiographs(side, centre, integral) });
   return evaluation;
 }
 } // namespace bone

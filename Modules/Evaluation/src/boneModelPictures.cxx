@@ -4,8 +4,10 @@
 #include "boneModelPictures.h"
 
 #include "boneDRRImageFilter.h"
-#include "bonePlaneView.h"
-#include "boneXRayGeometry.h"
+#include "boneDensityEvaluation.h"
+#include "boneFigure.h"
+#include "boneTicks.h"
+#include "boneXRayPicture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +17,7 @@ namespace bone
 {
 namespace
 {
-constexpr int Side = 420;  // pixels of a panel's longer side
-constexpr int Head = 30;   // above each row, for its name
-constexpr int Least = 220; // of a panel's width, for its name
+constexpr int Side = 420; // pixels of a panel's longer side
 
 /** Size of what is looked at, across and up, mm. */
 struct Extent
@@ -102,7 +102,7 @@ OneMode(int mode, double sd)
 std::string
 Title(const std::string & kind, int mode, double sd)
 {
-  return kind + ' ' + std::to_string(mode + 1) + (sd < 0 ? ": -3 SD" : sd > 0 ? ": +3 SD" : ": MEAN");
+  return kind + " mode " + std::to_string(mode + 1) + (sd < 0 ? ", \u22123 SD" : sd > 0 ? ", +3 SD" : ", mean");
 }
 
 Panel
@@ -151,8 +151,8 @@ ShadeSurface(const TriangleSurface & surface,
   return panel;
 }
 
-PictureImage::Pointer
-DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direction, const Vector3 & up)
+Canvas
+DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direction, const Vector3 & up, bool letters)
 {
   const auto & content = model.GetContent();
   modes = std::min(modes, static_cast<int>(content.shape.GetNumberOfModes()));
@@ -166,45 +166,49 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
       shapes.push_back(UnstackPoints(content.shape.Synthesize(OneMode(mode, sd))));
     }
   }
-  const Extent extent = FindExtent(shapes, direction.cross(up), up);
-  const double pixel = 1.05 * std::max(extent.across, extent.height) / Side;
-  const int    columns = std::max(Least, static_cast<int>(std::ceil(1.05 * extent.across / pixel)) + 20);
-  const int    rows = static_cast<int>(std::ceil(1.05 * extent.height / pixel));
-  Canvas       canvas(3 * columns, modes * (rows + Head));
+  const Vector3 right = direction.cross(up);
+  const Extent  extent = FindExtent(shapes, right, up);
+  const double  pixel = 1.05 * std::max(extent.across, extent.height) / Side;
+  const int     columns = static_cast<int>(std::ceil(1.05 * extent.across / pixel)) + 20;
+  const int     rows = static_cast<int>(std::ceil(1.05 * extent.height / pixel));
+  Figure        figure;
+  figure.sections.emplace_back().rows.resize(static_cast<std::size_t>(modes));
   for (std::size_t i = 0; i < shapes.size(); ++i)
   {
     for (std::size_t p = 0; p < id.size(); ++p)
     {
       surface.points[p] = shapes[i][id[p]];
     }
-    const int column = static_cast<int>(i % 3) * columns, row = static_cast<int>(i / 3) * (rows + Head);
-    canvas.DrawPanel(
-      column, row + Head, ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows), { 0.0, 1.1 });
-    canvas.DrawText(Vector2(column + 8, row + 20),
-                    Title("SHAPE", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0)));
+    PanelCell cell;
+    cell.panel = ShadeSurface(surface, extent.centre, direction, up, pixel, columns, rows);
+    cell.style.title = Title("shape", static_cast<int>(i / 3), 3.0 * (static_cast<double>(i % 3) - 1.0));
+    cell.style.letters = letters ? LettersOf(right, -up) : SideLetters();
+    cell.style.pixelSize = Vector2::Constant(pixel);
+    cell.style.window = { 0.0, 1.1 };
+    figure.sections[0].rows[i / 3].push_back(std::move(cell));
   }
-  return canvas.GetImage();
+  return DrawFigure(figure);
 }
 
-PictureImage::Pointer
-DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up)
+Canvas
+DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up, bool letters)
 {
-  std::vector<std::pair<std::string, std::vector<MeshArrays>>> rows(1);
-  rows[0].first = "SHAPE";
+  std::vector<std::pair<std::string, std::vector<MeshArrays>>> kinds(1);
+  kinds[0].first = "shape";
   for (const double sd : { -3.0, 0.0, 3.0 })
   {
-    rows[0].second.push_back(model.Synthesize(OneMode(0, sd)));
+    kinds[0].second.push_back(model.Synthesize(OneMode(0, sd)));
   }
   if (model.GetContent().density.GetNumberOfModes() > 0)
   {
-    rows.emplace_back("DENSITY", std::vector<MeshArrays>());
+    kinds.emplace_back("density", std::vector<MeshArrays>());
     for (const double sd : { -3.0, 0.0, 3.0 })
     {
-      rows[1].second.push_back(model.Synthesize(Eigen::VectorXd(), OneMode(0, sd)));
+      kinds[1].second.push_back(model.Synthesize(Eigen::VectorXd(), OneMode(0, sd)));
     }
   }
-  Vector3 lower = rows[0].second[0].points.front(), upper = lower;
-  for (const MeshArrays & mesh : rows[0].second)
+  Vector3 lower = kinds[0].second[0].points.front(), upper = lower;
+  for (const MeshArrays & mesh : kinds[0].second)
   {
     for (const Vector3 & x : mesh.points)
     {
@@ -214,31 +218,42 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
   }
   auto geometry = XRayGeometry::New();
   geometry->SetView(XRayGeometry::Framing(lower, upper, direction, up, 900.0, 1100.0, Side));
-  Panel        mean = Radiograph(rows[0].second[1], geometry);
-  const int    width = std::max(mean.columns, Least);
+  const Panel  mean = Radiograph(kinds[0].second[1], geometry);
   const double brightest = *std::max_element(mean.values.begin(), mean.values.end());
-  Canvas       canvas(5 * width, static_cast<int>(rows.size()) * (mean.rows + Head));
-  for (std::size_t r = 0; r < rows.size(); ++r)
+  const double white = RoundInRange(brightest, brightest);
+
+  PanelStyle style;
+  style.letters = letters ? LettersOf(geometry->GetView()) : SideLetters();
+  style.pixelSize = PixelSizeAt(geometry->GetView(), 0.5 * (lower + upper));
+  style.scaleNote = "at the bone";
+  style.unit = DensityUnitName(model.GetContent().mean.quantity) + "\u00B7mm";
+  style.colorBar = true;
+  Figure figure;
+  figure.sections.emplace_back();
+  for (const auto & [kind, meshes] : kinds)
   {
-    const int top = static_cast<int>(r) * (mean.rows + Head);
+    std::vector<PanelCell> row, differences;
     for (int i = 0; i < 3; ++i)
     {
-      Panel panel = Radiograph(rows[r].second[static_cast<std::size_t>(i)], geometry);
-      canvas.DrawPanel(i * width, top + Head, panel, { 0.0, brightest });
-      canvas.DrawText(Vector2(i * width + 8, top + 20), Title(rows[r].first, 0, 3.0 * (i - 1)));
-      if (i == 1)
+      PanelCell cell{ Radiograph(meshes[static_cast<std::size_t>(i)], geometry), style, {} };
+      cell.style.title = Title(kind, 0, 3.0 * (i - 1));
+      cell.style.window = { 0.0, white };
+      row.push_back(cell);
+      for (std::size_t k = 0; k < cell.panel.values.size(); ++k)
       {
-        continue;
+        cell.panel.values[k] -= mean.values[k];
       }
-      for (std::size_t k = 0; k < panel.values.size(); ++k)
+      cell.style.title += " \u2212 mean";
+      cell.style.map = ColorMap::Diverging;
+      cell.style.window = { -0.5 * white, 0.5 * white };
+      if (i != 1)
       {
-        panel.values[k] -= mean.values[k];
+        differences.push_back(std::move(cell));
       }
-      const int column = (i == 0 ? 3 : 4) * width;
-      canvas.DrawPanel(column, top + Head, panel, { -0.5 * brightest, 0.5 * brightest }, ColorMap::Diverging);
-      canvas.DrawText(Vector2(column + 8, top + 20), i == 0 ? "-3 SD - MEAN" : "+3 SD - MEAN");
     }
+    row.insert(row.end(), differences.begin(), differences.end());
+    figure.sections[0].rows.push_back(std::move(row));
   }
-  return canvas.GetImage();
+  return DrawFigure(figure);
 }
 } // namespace bone

@@ -5,49 +5,101 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <stdexcept>
 
 namespace bone
 {
 namespace
 {
-constexpr int Gap = 8;
-constexpr int Caption = 24;
-constexpr int CaptionWidth = 228; // of 19 characters
-
 void
-DrawContours(Canvas & canvas, const Vector2 & corner, const PlaneView & view, const ContourSlice & slice)
+DrawContours(Canvas &             canvas,
+             const Rectangle &    place,
+             const Panel &        panel,
+             const PlaneView &    view,
+             const ContourSlice & slice)
 {
   for (const Contour & contour : slice.contours)
   {
-    const std::size_t count = contour.points.size();
-    const std::size_t lines = contour.axis ? count - std::min<std::size_t>(count, 1) : count;
-    for (std::size_t i = 0; i < lines; ++i)
+    std::vector<Vector2> points;
+    for (const Vector3 & p : contour.points)
     {
-      canvas.DrawLine(corner + view.Project(contour.points[i]),
-                      corner + view.Project(contour.points[(i + 1) % count]),
-                      StyleOf(contour).color);
+      points.push_back(PanelPoint(place, panel, view.Project(p)));
     }
+    canvas.DrawPolyline(points, StyleOf(contour).color, 1.8, !contour.axis, &place);
   }
 }
 
-std::string
-Rounded(double value)
+/** Model minus reference; NaN where both are 0. */
+Panel
+Difference(const Panel & model, const Panel & reference)
 {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(std::abs(value) < 10.0 ? 1 : 0) << value;
-  return text.str();
+  Panel difference = model;
+  for (std::size_t k = 0; k < difference.values.size(); ++k)
+  {
+    difference.values[k] -= reference.values[k];
+    if (model.values[k] == 0.0F && reference.values[k] == 0.0F)
+    {
+      difference.values[k] = std::nanf("");
+    }
+  }
+  return difference;
+}
+
+/** Four levels at most beside one another: the models, and below them their differences. The reference is in the first
+ * column of the first group alone. */
+std::vector<std::vector<PanelCell>>
+ComparisonRows(const Comparison & comparison)
+{
+  constexpr std::size_t               across = 4;
+  std::vector<std::vector<PanelCell>> rows;
+  PanelStyle                          style;
+  style.letters = comparison.letters;
+  style.pixelSize = comparison.pixelSize;
+  style.scaleNote = comparison.scaleNote;
+  style.unit = comparison.unit;
+  for (std::size_t i = 0; i < comparison.levels.size(); ++i)
+  {
+    const LevelPanel & level = comparison.levels[i];
+    style.window = comparison.window;
+    style.map = ColorMap::Grey;
+    if (i % across == 0)
+    {
+      rows.resize(rows.size() + 2);
+      PanelCell first;
+      if (i == 0)
+      {
+        style.title = comparison.referenceName;
+        style.colorBar = true;
+        first = { comparison.reference, style, {} };
+        style.colorBar = false;
+      }
+      rows[rows.size() - 2].push_back(first);
+      rows.back().emplace_back();
+    }
+    style.title = level.name;
+    rows[rows.size() - 2].push_back({ level.panel, style, {} });
+    style.title = level.name + " \u2212 " + comparison.referenceName;
+    style.window = { -comparison.scale, comparison.scale };
+    style.map = ColorMap::Diverging;
+    style.colorBar = true;
+    rows.back().push_back({ Difference(level.panel, comparison.reference), style, {} });
+    style.colorBar = false;
+  }
+  return rows;
 }
 } // namespace
 
-PictureImage::Pointer
-DrawSlices(const CTImage * ct, const ContourStack * stack, const Window & window)
+Canvas
+DrawSlices(const CTImage *           ct,
+           const ContourStack *      stack,
+           const Window &            window,
+           const std::string &       unit,
+           const itk::ImageBase<3> * whole)
 {
-  constexpr int        columns = 3;
-  constexpr int        rows = 2;
-  const auto &         slices = stack->GetSlices();
-  std::vector<Vector3> points;
+  constexpr std::size_t most = 6, across = 3;
+  const auto &          slices = stack->GetSlices();
+  const Vector3 &       normal = stack->GetNormal();
+  std::vector<Vector3>  points;
   for (const ContourSlice & slice : slices)
   {
     for (const Contour & contour : slice.contours)
@@ -55,53 +107,52 @@ DrawSlices(const CTImage * ct, const ContourStack * stack, const Window & window
       points.insert(points.end(), contour.points.begin(), contour.points.end());
     }
   }
-  PlaneView     view = FramePlane(stack->GetNormal(), slices.front().origin, points, 5.0, 380);
-  Canvas        canvas(columns * (view.columns + Gap) + Gap, rows * (view.rows + Caption + Gap) + Gap);
-  const Vector3 flatCorner = view.corner - view.corner.dot(stack->GetNormal()) * stack->GetNormal();
-  for (int i = 0; i < columns * rows; ++i)
+  if (points.empty())
   {
-    const auto k = static_cast<std::size_t>((i + 0.5) / (columns * rows) * static_cast<double>(slices.size()));
-    const int  column = Gap + i % columns * (view.columns + Gap);
-    const int  row = Gap + i / columns * (view.rows + Caption + Gap);
-    view.corner = flatCorner + stack->GetHeight(k) * stack->GetNormal();
-    canvas.DrawText(Vector2(column, row + 16),
-                    "slice " + std::to_string(k) + ", " + Rounded(stack->GetHeight(k)) + " mm");
-    canvas.DrawPanel(column, row + Caption, SamplePlane(ct, view), window);
-    DrawContours(canvas, Vector2(column, row + Caption), view, slices[k]);
+    throw std::invalid_argument("The slices cannot be drawn: the stack has no contours");
   }
-  return canvas.GetImage();
+  PlaneView     view = FramePlane(normal, slices.front().origin, points, 5.0, 380);
+  const Vector3 flatCorner = view.corner - view.corner.dot(normal) * normal;
+
+  Figure                 figure;
+  std::vector<PanelCell> cells;
+  const std::size_t      count = std::min(most, slices.size());
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t k = (2 * i + 1) * slices.size() / (2 * count);
+    view.corner = flatCorner + stack->GetHeight(k) * normal;
+    PanelCell cell;
+    cell.panel = SamplePlane(ct, view);
+    cell.style.title = DescribeSlice(whole != nullptr ? whole : ct, normal, slices[k].origin);
+    cell.style.letters = view.Letters();
+    cell.style.pixelSize = Vector2::Constant(view.pixel);
+    cell.style.window = window;
+    cell.style.unit = unit;
+    cell.style.colorBar = i == (count - 1) / across * across;
+    cell.overlay = [panel = Panel{ view.columns, view.rows, {} }, view, slice = &slices[k]](
+                     Canvas & canvas, const Rectangle & place) { DrawContours(canvas, place, panel, view, *slice); };
+    cells.push_back(std::move(cell));
+  }
+  figure.sections.emplace_back();
+  for (std::size_t i = 0; i < count; i += across)
+  {
+    const auto first = cells.begin() + static_cast<std::ptrdiff_t>(i);
+    figure.sections[0].rows.emplace_back(first,
+                                         cells.begin() + static_cast<std::ptrdiff_t>(std::min(i + across, count)));
+  }
+  figure.legend.assign(ContourStyles().begin(), ContourStyles().end());
+  figure.note = "CT slices are counted from 0, in the order of the file; coordinates are LPS.";
+  return DrawFigure(figure);
 }
 
-PictureImage::Pointer
-DrawComparison(const Panel &                   reference,
-               const std::string &             referenceName,
-               const std::vector<LevelPanel> & levels,
-               const Window &                  window,
-               double                          scale)
+Canvas
+DrawComparison(const std::vector<Comparison> & comparisons)
 {
-  const int width = std::max(reference.columns, CaptionWidth) + Gap;
-  const int height = reference.rows + Caption + Gap;
-  Canvas    canvas(3 * width + Gap, static_cast<int>(levels.size()) * height + Gap);
-  for (std::size_t i = 0; i < levels.size(); ++i)
+  Figure figure;
+  for (const Comparison & comparison : comparisons)
   {
-    const Panel & model = levels[i].panel;
-    const int     row = Gap + static_cast<int>(i) * height;
-    Panel         difference = model;
-    for (std::size_t k = 0; k < difference.values.size(); ++k)
-    {
-      difference.values[k] -= reference.values[k];
-      if (model.values[k] == 0.0F && reference.values[k] == 0.0F)
-      {
-        difference.values[k] = std::nanf(""); // beside the bone on a radiograph
-      }
-    }
-    canvas.DrawText(Vector2(Gap, row + 16), referenceName);
-    canvas.DrawPanel(Gap, row + Caption, reference, window);
-    canvas.DrawText(Vector2(Gap + width, row + 16), levels[i].name);
-    canvas.DrawPanel(Gap + width, row + Caption, model, window);
-    canvas.DrawText(Vector2(Gap + 2 * width, row + 16), "model - CT, +-" + Rounded(scale));
-    canvas.DrawPanel(Gap + 2 * width, row + Caption, difference, { -scale, scale }, ColorMap::Diverging);
+    figure.sections.push_back({ comparison.title, ComparisonRows(comparison) });
   }
-  return canvas.GetImage();
+  return DrawFigure(figure);
 }
 } // namespace bone

@@ -32,8 +32,8 @@ CropToBone(const CTImage *             ct,
 double
 FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan);
 
-/** The outline that an atlas found in `ct` is drawn to the CT's edges by the snakes, within 1.5 mm or two voxels: nobody
- * drew it. */
+/** The outline that an atlas found in `ct` is drawn to the CT's edges by the snakes, within 1.5 mm or two voxels:
+ * nobody drew it. */
 void
 DrawOutlineToEdges(const itk::ImageBase<3> & ct, SnakeContourParameters & contours);
 
@@ -57,10 +57,14 @@ PlanBuild(const BuildInput &                                      input,
           BuildPipeline &                                         pipeline,
           const std::function<void(const Resolution &, IdType)> & tried = {});
 
-/** A view from the front that holds the model and its margin: 400 pixels on the longer side, source at 1000 mm,
+/** A view from the front (AP) that holds the model and its margin: 400 pixels on the longer side, source at 1000 mm,
  * detector 200 mm behind the bone's centre. */
 XRayGeometry::Pointer
 FrontView(const BuildPipeline::MeshType * mesh);
+
+/** The same from the patient's left: the back is at the right of its image, as on a sagittal plane. */
+XRayGeometry::Pointer
+LateralView(const BuildPipeline::MeshType * mesh);
 
 /** Sets the numbers of tetrahedra of the coarser levels on the collapse, as the plan says, and brings the pipeline up
  * to date. A null geometry is the front view of the tiling. */

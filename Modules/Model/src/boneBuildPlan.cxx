@@ -119,8 +119,10 @@ PlanBuild(const BuildInput &                                      input,
   return resolution;
 }
 
+namespace
+{
 XRayGeometry::Pointer
-FrontView(const BuildPipeline::MeshType * mesh)
+FramedView(const BuildPipeline::MeshType * mesh, const Vector3 & beam)
 {
   Vector3 lower = Vector3::Constant(std::numeric_limits<double>::max());
   Vector3 upper = -lower;
@@ -130,14 +132,22 @@ FrontView(const BuildPipeline::MeshType * mesh)
     upper = upper.cwiseMax(p);
   }
   auto geometry = XRayGeometry::New();
-  geometry->SetView(XRayGeometry::Framing(lower - Vector3::Constant(5.0),
-                                          upper + Vector3::Constant(5.0),
-                                          Vector3::UnitY(),
-                                          Vector3::UnitZ(),
-                                          1000.0,
-                                          1200.0,
-                                          400));
+  geometry->SetView(XRayGeometry::Framing(
+    lower - Vector3::Constant(5.0), upper + Vector3::Constant(5.0), beam, Vector3::UnitZ(), 1000.0, 1200.0, 400));
   return geometry;
+}
+} // namespace
+
+XRayGeometry::Pointer
+FrontView(const BuildPipeline::MeshType * mesh)
+{
+  return FramedView(mesh, Vector3::UnitY());
+}
+
+XRayGeometry::Pointer
+LateralView(const BuildPipeline::MeshType * mesh)
+{
+  return FramedView(mesh, -Vector3::UnitX());
 }
 
 void

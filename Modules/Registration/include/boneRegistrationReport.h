@@ -4,9 +4,9 @@
 #ifndef boneRegistrationReport_h
 #define boneRegistrationReport_h
 
+#include "boneCanvas.h"
 #include "boneDeformableRegistration.h"
 #include "boneDensityMesh.h"
-#include "boneImageIO.h"
 #include "boneRigidRegistration.h"
 #include "boneVolumeRegistration.h"
 
@@ -48,9 +48,13 @@ PoseCovariance(const DeformableRegistrationResult & result);
 
 /** A picture of the X-ray with the outline of the model in its pose, and of what is left of the X-ray where the
  * model's radiograph is subtracted, times the factor that leaves least: the bone is gone where pose and density are
- * right. Rows of the picture are those of the detector. */
-PictureImage::Pointer
-DrawRegistration(const RadiographView & xray, const MeshArrays & model, const RigidPose & pose);
+ * right. Rows of the picture are those of the detector. The letters at its sides are the patient's directions, whose
+ * unit vectors (to the left, to the back, to the head) are the columns of `patientAxes` in the model's space. */
+Canvas
+DrawRegistration(const RadiographView &  xray,
+                 const MeshArrays &      model,
+                 const RigidPose &       pose,
+                 const Eigen::Matrix3d & patientAxes = Eigen::Matrix3d::Identity());
 } // namespace bone
 
 #endif

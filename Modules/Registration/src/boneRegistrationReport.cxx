@@ -3,8 +3,9 @@
  *=========================================================================*/
 #include "boneRegistrationReport.h"
 
-#include "boneCanvas.h"
+#include "boneFigure.h"
 #include "boneMeshRadiograph.h"
+#include "boneXRayPicture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,25 +47,30 @@ WindowOf(std::vector<float> values)
 
 /** Lines between pixels that see the model and neighbours that do not. */
 void
-DrawOutline(Canvas & canvas, const XRayGeometry::View & view, const std::vector<float> & chords, double scale)
+DrawOutline(Canvas &                   canvas,
+            const Rectangle &          place,
+            const XRayGeometry::View & view,
+            const std::vector<float> & chords,
+            const Color &              color)
 {
-  const Color red{ { 255, 80, 60 } };
-  const auto  sees = [&](int c, int r) {
+  const auto sees = [&](int c, int r) {
     return c >= 0 && r >= 0 && c < view.size[0] && r < view.size[1] &&
            chords[static_cast<std::size_t>(r) * view.size[0] + c] > 0.0f;
   };
-  for (int r = 0; r < view.size[1]; ++r)
+  const auto corner = [&](int c, int r) {
+    return Vector2(place.x + c * place.width / view.size[0], place.y + r * place.height / view.size[1]);
+  };
+  for (int r = 0; r <= view.size[1]; ++r)
   {
-    for (int c = 0; c < view.size[0]; ++c)
+    for (int c = 0; c <= view.size[0]; ++c)
     {
-      const Vector2 corner = scale * Vector2(c, r);
       if (sees(c, r) != sees(c - 1, r))
       {
-        canvas.DrawLine(corner, corner + scale * Vector2(0, 1), red);
+        canvas.DrawLine(corner(c, r), corner(c, r + 1), color);
       }
       if (sees(c, r) != sees(c, r - 1))
       {
-        canvas.DrawLine(corner, corner + scale * Vector2(1, 0), red);
+        canvas.DrawLine(corner(c, r), corner(c + 1, r), color);
       }
     }
   }
@@ -152,20 +158,43 @@ ReportRegions(const std::vector<RegionEstimate> & regions)
   return posterior;
 }
 
-/** The panel magnified, and with it its rows' true height. */
-Panel
-Magnify(const std::vector<float> & values, const XRayGeometry::View & view, int factor)
+/** A view seen in other axes: those columns of `axes`. */
+XRayGeometry::View
+InAxes(XRayGeometry::View view, const Eigen::Matrix3d & axes)
 {
-  Panel panel{ view.size[0] * factor, view.size[1] * factor, {} };
-  panel.values.resize(static_cast<std::size_t>(panel.columns) * panel.rows);
-  for (int r = 0; r < panel.rows; ++r)
+  for (Vector3 * v : { &view.source, &view.direction, &view.detectorOrigin, &view.detectorU, &view.detectorV })
   {
-    for (int c = 0; c < panel.columns; ++c)
+    *v = axes.transpose() * *v;
+  }
+  return view;
+}
+
+/** The factor by which a radiograph leaves least of an X-ray, about the means where the model is seen. */
+double
+BestGain(const RadiographView & xray, const std::vector<float> & drr, const std::vector<float> & chords)
+{
+  double sums[5] = {};
+  for (std::size_t i = 0; i < drr.size(); ++i)
+  {
+    if (chords[i] > 0.0f && std::isfinite(xray.values[i]) && (xray.weights.empty() || xray.weights[i] > 0.0f))
     {
-      panel.At(c, r) = values[static_cast<std::size_t>(r / factor) * view.size[0] + c / factor];
+      const double x = xray.values[i];
+      const double g = drr[i];
+      const double terms[5] = { 1.0, x, g, x * g, g * g };
+      std::transform(terms, terms + 5, sums, sums, [](double term, double sum) { return sum + term; });
     }
   }
-  return panel;
+  const double spread = sums[4] - sums[2] * sums[2] / std::max(1.0, sums[0]);
+  return spread > 0.0 ? (sums[3] - sums[1] * sums[2] / std::max(1.0, sums[0])) / spread : 0.0;
+}
+
+/** How large an image is shown: whole pixels up to about 512 a side, smaller than its pixels above 1024. */
+double
+ZoomOf(const XRayGeometry::View & view)
+{
+  constexpr int width = 512, most = 1024;
+  const int     longer = std::max(view.size[0], view.size[1]);
+  return longer > most ? static_cast<double>(most) / longer : std::max(1, width / longer);
 }
 } // namespace
 
@@ -243,47 +272,52 @@ ReportRegistration(const VolumeRegistrationResult & result)
   return report;
 }
 
-PictureImage::Pointer
-DrawRegistration(const RadiographView & xray, const MeshArrays & model, const RigidPose & pose)
+Canvas
+DrawRegistration(const RadiographView &  xray,
+                 const MeshArrays &      model,
+                 const RigidPose &       pose,
+                 const Eigen::Matrix3d & patientAxes)
 {
-  constexpr int      width = 512; // of a panel, about
   const auto &       view = xray.view;
-  const int          factor = std::max(1, width / std::max(view.size[0], view.size[1]));
+  const auto         inModel = pose.ToModelSpace(view);
   std::vector<float> drr(xray.GetNumberOfPixels());
   std::vector<float> chords(xray.GetNumberOfPixels());
-  ProjectMesh(model.points, model, pose.ToModelSpace(view), {}, Execution(), drr.data());
+  ProjectMesh(model.points, model, inModel, {}, Execution(), drr.data());
   MeshRadiographParameters ones;
   ones.scale = 0.0;
   ones.offset = 1.0;
-  ProjectMesh(model.points, model, pose.ToModelSpace(view), ones, Execution(), chords.data());
-
-  // The factor that leaves least, about the means where the model is seen.
-  double sums[5] = {};
-  for (std::size_t i = 0; i < drr.size(); ++i)
-  {
-    if (chords[i] > 0.0f && std::isfinite(xray.values[i]) && (xray.weights.empty() || xray.weights[i] > 0.0f))
-    {
-      const double x = xray.values[i];
-      const double g = drr[i];
-      const double terms[5] = { 1.0, x, g, x * g, g * g };
-      std::transform(terms, terms + 5, sums, sums, [](double term, double sum) { return sum + term; });
-    }
-  }
-  const double spread = sums[4] - sums[2] * sums[2] / std::max(1.0, sums[0]);
-  const double gain = spread > 0.0 ? (sums[3] - sums[1] * sums[2] / std::max(1.0, sums[0])) / spread : 0.0;
+  ProjectMesh(model.points, model, inModel, ones, Execution(), chords.data());
+  const double gain = BestGain(xray, drr, chords);
   auto         rest = xray.values;
   for (std::size_t i = 0; i < rest.size(); ++i)
   {
     rest[i] -= static_cast<float>(gain * drr[i]);
   }
 
-  const Window  window = WindowOf(xray.values);
-  const int     columns = view.size[0] * factor;
-  constexpr int gap = 8;
-  Canvas        canvas(2 * columns + gap, view.size[1] * factor);
-  canvas.DrawPanel(0, 0, Magnify(xray.values, view, factor), window);
-  canvas.DrawPanel(columns + gap, 0, Magnify(rest, view, factor), window);
-  DrawOutline(canvas, view, chords, factor);
-  return canvas.GetImage();
+  Vector3 centre = Vector3::Zero();
+  for (const Vector3 & p : model.points)
+  {
+    centre += p / static_cast<double>(model.points.size());
+  }
+  const auto       patient = InAxes(inModel, patientAxes);
+  const Color      outline = ContourStyles()[static_cast<std::size_t>(ContourKind::Periosteal)].color;
+  const PanelStyle style{ "X-ray",
+                          LettersOf(patient),
+                          PixelSizeAt(inModel, centre),
+                          "at the bone",
+                          WindowOf(xray.values),
+                          ColorMap::Grey,
+                          false,
+                          "",
+                          ZoomOf(view) };
+  PanelCell image{ { view.size[0], view.size[1], xray.values }, style, [&](Canvas & canvas, const Rectangle & place) {
+                    DrawOutline(canvas, place, view, chords, outline);
+                  } };
+  PanelCell left{ { view.size[0], view.size[1], rest }, style, {} };
+  left.style.title = "X-ray less the model's radiograph";
+  Figure figure;
+  figure.sections.push_back({ DescribeView(patient), { { std::move(image), std::move(left) } } });
+  figure.legend.push_back({ "outline of the model where it was found", outline });
+  return DrawFigure(figure);
 }
 } // namespace bone
