@@ -240,10 +240,9 @@ export function atlasData(counts = [6, 6, 8]) {
 
 const sections = { viewer: 'Model', slices: 'CT slices', atlas: 'Statistical model' };
 
-/** Writes a report page. bundle: the folder of bundle.txt, as CMake or build.mjs makes it. */
-export function writePage(path, data, bundle) {
-  const source = (name) => readFileSync(join(import.meta.dirname ?? new URL('.', import.meta.url).pathname,
-    '../../Modules/Report/page', name), 'utf8');
+/** Writes a report page. bundle: the folder of bundle.txt, as CMake or build.mjs makes it. edit changes the page's text. */
+export function writePage(path, data, bundle, edit = (html) => html) {
+  const source = (name) => readFileSync(new URL(`../../Modules/Report/page/${name}`, import.meta.url), 'utf8');
   const parts = Object.keys(sections).filter((id) => data[id === 'viewer' ? 'model' : id]);
   const html = `<!DOCTYPE html>
 <html lang="en">
@@ -254,14 +253,15 @@ export function writePage(path, data, bundle) {
 <style>${source('page.css')}</style>
 </head>
 <body>
-<header><h1>${data.name}</h1><p>Made by BoneTK from a synthetic solid.</p></header>
-<nav aria-label="Sections"><a href="#summary">Summary</a>${parts.map((id) => `<a href="#section-${id}">${sections[id]}</a>`).join('')}</nav>
+<header><h1>${data.name}</h1><p>BoneTK report of a synthetic solid</p>
+<nav><a href="#summary">Summary</a> ${parts.map((id) => `<a href="#section-${id}">${sections[id]}</a>`).join(' ')}</nav></header>
 <main>
+<section class="warnings" role="status"><h2>Warnings</h2><ul><li>This is a test page.</li></ul></section>
 <section id="summary"><h2>Summary</h2>
-<div class="warnings"><strong>Warnings</strong><ul><li>This is a test page.</li></ul></div>
-<table><caption>Volumes by region</caption><thead><tr><th>Region</th><th class="number">Volume (cm³)</th><th class="number">Mean (HU)</th></tr></thead>
-<tbody><tr><th>cortical</th><td class="number">41.3</td><td class="number">1290</td></tr><tr><th>trabecular</th><td class="number">28.0</td><td class="number">402</td></tr></tbody></table>
-<details><summary>Provenance</summary><pre>bonetk build ct.nii.gz --labels labels.nii.gz -o out</pre></details></section>
+<table><caption>Volumes by region</caption><thead><tr><th scope="col">Region</th><th scope="col">Volume (cm\u00b3)</th></tr></thead>
+<tbody><tr><th scope="row">cortical</th><td>41.3</td></tr><tr><th scope="row">trabecular</th><td>28.0</td></tr></tbody></table>
+<details><summary>All parameters</summary><table><tbody><tr><th scope="row">degree</th><td>3</td></tr></tbody></table></details>
+</section>
 ${parts.map((id) => `<section id="section-${id}"><h2>${sections[id]}</h2><div id="${id}"></div></section>`).join('\n')}
 </main>
 <script type="application/json" id="bonetk-data">${JSON.stringify(data).replaceAll('</', '<\\/')}</script>
@@ -270,5 +270,5 @@ ${parts.map((id) => `<section id="section-${id}"><h2>${sections[id]}</h2><div id
 </body>
 </html>
 `;
-  writeFileSync(path, html);
+  writeFileSync(path, edit(html));
 }

@@ -62,3 +62,8 @@ export async function decodeArray(array) {
   const offsets = [array.offset ?? 0].flat();
   return Float64Array.from(raw, (value, i) => offsets[i % offsets.length] + array.step * value);
 }
+
+/** A value that may be stored as base64 of the gzip of its JSON. */
+export async function decodeJson(value) {
+  return value.gzip ? JSON.parse(new TextDecoder().decode(await inflate(bytesOfBase64(value.gzip)))) : value;
+}

@@ -2,6 +2,7 @@
 import { decodeArray } from './arrays.js';
 import { button, element, group, slider } from './dom.js';
 import { Mesh } from './mesh.js';
+import { combine } from './modes.js';
 import { formatNumber } from './numbers.js';
 import { colourBar, ScaleBar } from './overlay.js';
 import { coarserView, radiograph } from './radiograph.js';
@@ -9,19 +10,6 @@ import { directionLetters, pictureFrame } from './slices.js';
 import { Viewer } from './viewer.js';
 
 const reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
-
-/** values + sum of weight times change over the modes. */
-export function combine(values, changes, weights) {
-  const sum = Float64Array.from(values);
-  changes.forEach((change, mode) => {
-    if (weights[mode] !== 0) {
-      for (let i = 0; i < sum.length; ++i) {
-        sum[i] += weights[mode] * change[i];
-      }
-    }
-  });
-  return sum;
-}
 
 export class Atlas {
   static async create(container, data, prefix) {

@@ -33,20 +33,20 @@ function tableOf(degree) {
 
 const powers = new Float64Array(4 * 32);
 
-function fillPowers(degree, b0, b1, b2, b3) {
-  const b = [b0, b1, b2, b3];
-  for (let vertex = 0; vertex < 4; ++vertex) {
-    powers[vertex * 32] = 1;
-    for (let n = 1; n <= degree; ++n) {
-      powers[vertex * 32 + n] = powers[vertex * 32 + n - 1] * b[vertex];
-    }
+function fillPowers(row, degree, base) {
+  powers[row] = 1;
+  for (let n = 1; n <= degree; ++n) {
+    powers[row + n] = powers[row + n - 1] * base;
   }
 }
 
 /** The value at barycentric coordinates of the polynomial whose coefficients begin at `begin`. */
 export function evaluate(coefficients, begin, degree, b0, b1, b2, b3) {
   const { exponents, weights } = tableOf(degree);
-  fillPowers(degree, b0, b1, b2, b3);
+  fillPowers(0, degree, b0);
+  fillPowers(32, degree, b1);
+  fillPowers(64, degree, b2);
+  fillPowers(96, degree, b3);
   let sum = 0;
   for (let c = 0; c < weights.length; ++c) {
     sum += coefficients[begin + c] * weights[c] * powers[exponents[4 * c]] * powers[32 + exponents[4 * c + 1]] *

@@ -1,22 +1,24 @@
 // Colours that readers with any colour vision can tell apart.
 
-/** Red, green, blue (0..255) of the map "cividis" (Nuñez, Anderton and Renslow, 2018) by d3's polynomials; share 0..1. */
-export function cividis(share) {
-  const t = Math.min(1, Math.max(0, share));
-  const channels = [
-    -4.54 - t * (35.34 - t * (2381.73 - t * (6402.7 - t * (7024.72 - t * 2710.57)))),
-    32.49 + t * (170.73 + t * (52.82 - t * (131.46 - t * (176.58 - t * 67.37)))),
-    81.24 + t * (442.36 - t * (2482.43 - t * (6167.24 - t * (6614.94 - t * 2475.67))))
-  ];
-  return channels.map((channel) => Math.min(255, Math.max(0, Math.round(channel))));
+// The map "viridis" at even distances, as in BoneTK's pictures.
+const stops = [
+  [68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137], [53, 183, 121],
+  [109, 205, 89], [180, 222, 44], [253, 231, 37]
+];
+
+/** Red, green, blue (0..255) of a share (0..1) of the density's range. */
+export function densityColour(share) {
+  const at = Math.min(1, Math.max(0, share)) * (stops.length - 1);
+  const first = Math.min(Math.floor(at), stops.length - 2);
+  return stops[first].map((channel, i) => Math.round(channel + (at - first) * (stops[first + 1][i] - channel)));
 }
 
 const densityTable = new Uint8Array(3 * 256);
 for (let i = 0; i < 256; ++i) {
-  densityTable.set(cividis(i / 255), 3 * i);
+  densityTable.set(densityColour(i / 255), 3 * i);
 }
 
-/** Three bytes for each density, by the map's ends at the range's; grey where there is no density. */
+/** Three bytes for each density; the map's ends stand for the range's. */
 export function coloursOfDensities(densities, [low, high]) {
   const colours = new Uint8Array(3 * densities.length);
   const scale = 255 / (high - low);
@@ -32,8 +34,7 @@ export function coloursOfDensities(densities, [low, high]) {
 
 /** A CSS gradient of the density's colours from left to right. */
 export function densityGradient() {
-  const stops = Array.from({ length: 17 }, (_, i) => `rgb(${cividis(i / 16).join(' ')})`);
-  return `linear-gradient(to right, ${stops.join(', ')})`;
+  return `linear-gradient(to right, ${stops.map((colour) => `rgb(${colour.join(' ')})`).join(', ')})`;
 }
 
 // Okabe and Ito's colours, in an order that suits bone: cortical, trabecular, cavity, further layers.

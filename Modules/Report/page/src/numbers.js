@@ -31,7 +31,7 @@ export function ticks([low, high], count) {
   }
   const values = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) {
-    values.push(i * step);
+    values.push(i * step || 0);
   }
   return { values, decimals: decimalsOf(step) };
 }

@@ -66,6 +66,28 @@ function pixelsOfCell(corners, view, axis, distance) {
           Math.max(0, Math.ceil(bounds[2])), Math.min(view.size[1] - 1, Math.floor(bounds[3]))];
 }
 
+/**
+ * Where a ray is within a cell: the range of t in which no values[i] + t rates[i] is negative, as [entry, exit], at most
+ * [0, 1]. A ray in a face's plane belongs to one of the face's two cells: that into which a small shift leads, the same
+ * for all cells.
+ */
+function rangeInCell(values, rates, slopes, range) {
+  range[0] = 0;
+  range[1] = 1;
+  for (let i = 0; i < 4; ++i) {
+    if (Math.abs(rates[i]) < 1e-9 && Math.abs(values[i]) < 1e-9) {
+      const leading = slopes[i].find((component) => Math.abs(component) > 1e-9);
+      range[1] = leading > 0 ? range[1] : -1;
+    } else if (rates[i] > 0) {
+      range[0] = Math.max(range[0], -values[i] / rates[i]);
+    } else if (rates[i] < 0) {
+      range[1] = Math.min(range[1], -values[i] / rates[i]);
+    } else if (values[i] < 0) {
+      range[1] = -1;
+    }
+  }
+}
+
 /** Adds a cell's part to the integrals of the pixels it projects to. */
 function addCell(mesh, cell, view, axis, distance, image) {
   const corners = [0, 1, 2, 3].map((vertex) => {
@@ -77,26 +99,18 @@ function addCell(mesh, cell, view, axis, distance, image) {
   const begin = mesh.begins[cell];
   const { points, weights } = gaussLegendre(Math.floor(degree / 2) + 1);
   const [left, right, top, bottom] = pixelsOfCell(corners, view, axis, distance);
+  const range = [0, 1];
+  const rates = [0, 0, 0, 0];
   for (let row = top; row <= bottom; ++row) {
+    const rowRay = add(subtract(view.detectorOrigin, view.source), view.detectorV, row * view.spacing[1]);
     for (let column = left; column <= right; ++column) {
-      const u = column * view.spacing[0];
-      const v = row * view.spacing[1];
-      const ray = [0, 1, 2].map(
-        (i) => view.detectorOrigin[i] + u * view.detectorU[i] + v * view.detectorV[i] - view.source[i]);
-      // The ray is source + t ray, t from 0 to 1; within the cell no coordinate is negative.
-      let entry = 0;
-      let exit = 1;
-      const rates = slopes.map((slope) => dot(slope, ray));
+      // The ray is source + t ray, t from 0 to 1.
+      const ray = add(rowRay, view.detectorU, column * view.spacing[0]);
       for (let i = 0; i < 4; ++i) {
-        const t = -values[i] / rates[i];
-        if (rates[i] > 0) {
-          entry = Math.max(entry, t);
-        } else if (rates[i] < 0) {
-          exit = Math.min(exit, t);
-        } else if (values[i] < 0) {
-          exit = -1;
-        }
+        rates[i] = dot(slopes[i], ray);
       }
+      rangeInCell(values, rates, slopes, range);
+      const [entry, exit] = range;
       if (exit > entry) {
         let sum = 0;
         for (let q = 0; q < points.length; ++q) {
@@ -104,7 +118,7 @@ function addCell(mesh, cell, view, axis, distance, image) {
           sum += weights[q] * evaluate(mesh.coefficients, begin, degree, values[0] + t * rates[0],
             values[1] + t * rates[1], values[2] + t * rates[2], values[3] + t * rates[3]);
         }
-        image[row * view.size[0] + column] += sum * (exit - entry) * Math.hypot(...ray);
+        image[row * view.size[0] + column] += sum * (exit - entry) * Math.sqrt(dot(ray, ray));
       }
     }
   }

@@ -1,5 +1,5 @@
 // The CT's slices with their contours.
-import { decodeArray } from './arrays.js';
+import { decodeArray, decodeJson } from './arrays.js';
 import { checkbox, element, group, oncePerFrame, slider } from './dom.js';
 import { colourBar, ScaleBar } from './overlay.js';
 
@@ -17,7 +17,8 @@ export function pictureFrame(columns, rows, height, ...children) {
 
 export class Slices {
   static async create(container, data) {
-    return new Slices(container, data, await decodeArray(data.values));
+    const contours = await decodeJson(data.contours);
+    return new Slices(container, { ...data, contours }, await decodeArray(data.values));
   }
 
   constructor(container, data, values) {

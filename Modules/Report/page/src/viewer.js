@@ -74,8 +74,14 @@ export class Viewer {
     const views = Object.keys(viewsByName).map((name) => button(capital(name), () => this.lookFrom(name)));
     this.controls.append(
       group('View', element('div', { className: 'buttons' }, ...views)),
-      group('Regions', ...this.regions.map((region) => this.regionRow(region)), this.colourRow()),
+      this.regionsGroup(),
       this.cutGroup());
+  }
+
+  regionsGroup() {
+    const fieldset = group('Regions', ...this.regions.map((region) => this.regionRow(region)), this.colourRow());
+    fieldset.firstChild.append(element('span', { className: 'legend-remark', 'aria-hidden': 'true' }, 'Opacity'));
+    return fieldset;
   }
 
   regionRow(region) {
@@ -84,7 +90,6 @@ export class Viewer {
       this.showRegions();
       this.updateCut();
     });
-    region.control = control;
     const opacity = element('input', {
       type: 'range', id: this.id(`opacity-${region.number}`), min: 0, max: 100, step: 5, value: 100, title: 'Opacity',
       'aria-label': `Opacity of ${region.name}, per cent`
@@ -96,7 +101,8 @@ export class Viewer {
     const swatch = element('span', {
       className: 'swatch', style: `background: rgb(${regionColour(region.number).join(' ')})`, 'aria-hidden': 'true'
     });
-    row.append(swatch, opacity);
+    control.after(swatch);
+    row.append(opacity);
     return row;
   }
 
@@ -123,8 +129,8 @@ export class Viewer {
         this.plane.position = mm;
         this.setCutOn(true);
       });
-    this.resolutionSlider = slider(this.id('cut-resolution'), 'Colours within a cell',
-      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} \u00d7 finer` }, (n) => {
+    this.resolutionSlider = slider(this.id('cut-resolution'), 'Resolution',
+      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` }, (n) => {
         this.resolution = n;
         this.updateCut();
       });
@@ -159,9 +165,9 @@ export class Viewer {
       const name = `${contour.name} contours`;
       this.scene.addContours(name, parseHexColour(contour.color), points, polylines(counts, closed));
       this.scene.setContoursShown(name, false);
-      const { row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false,
+      const { control, row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false,
         (isShown) => this.scene.setContoursShown(name, isShown));
-      row.append(element('span', { className: 'swatch', style: `background: ${contour.color}`, 'aria-hidden': 'true' }));
+      control.after(element('span', { className: 'swatch', style: `background: ${contour.color}`, 'aria-hidden': 'true' }));
       rows.push(row);
     }
     if (landmarks.length > 0) {
