@@ -4,9 +4,7 @@
 #include "boneBuildReport.h"
 #include "boneLabelCrop.h"
 #include "boneLabelValue.h"
-#include "boneCanvas.h"
 #include "boneMeshImageMetrics.h"
-#include "bonePlaneView.h"
 #include "boneResolution.h"
 
 #include <gtest/gtest.h>
@@ -239,28 +237,6 @@ TEST(MeshImageMetrics, OverlapAndPercentilesLookAtTheMask)
   EXPECT_DOUBLE_EQ(bone::DiceOverlap(model, mask), 2.0 * inside / static_cast<double>(inside + count));
 }
 
-TEST(PlaneView, AxialViewHasLeftToTheRightAndFrontUp)
-{
-  const std::vector<bone::Vector3> points = { { -10, -20, 5 }, { 30, 40, 5 } };
-  const bone::PlaneView            view = bone::FramePlane(bone::Vector3::UnitZ(), points[0], points, 5.0, 70);
-  EXPECT_TRUE(view.right.isApprox(bone::Vector3::UnitX()));
-  EXPECT_TRUE(view.down.isApprox(bone::Vector3::UnitY()));
-  EXPECT_TRUE(view.corner.isApprox(bone::Vector3(-15, -25, 5)));
-  EXPECT_NEAR(view.Project(points[1]).x(), 45.0 / view.pixel, 1e-9);
-}
-
-TEST(PlaneView, CutFollowsThePointsAndHasTheHeadUp)
-{
-  std::vector<bone::Vector3> points;
-  for (int i = 0; i < 50; ++i)
-  {
-    points.emplace_back(std::cos(i) * 10.0, std::sin(2.0 * i), 4.0 * i);
-  }
-  const bone::PlaneView view = bone::FrameLargestCut(points, 2.0, 200);
-  EXPECT_LT(view.down.z(), -0.99);
-  EXPECT_GT(view.right.x(), 0.99);
-}
-
 TEST(Resolution, EstimateScalesWithTheSquareRoot)
 {
   const auto coarse = bone::EstimateResolution(20000.0, 0.5, 10000);
@@ -268,17 +244,4 @@ TEST(Resolution, EstimateScalesWithTheSquareRoot)
   EXPECT_NEAR(coarse.sliceStep / fine.sliceStep, 2.0, 1e-9);
   EXPECT_NEAR(coarse.contourSpacing / fine.contourSpacing, 2.0, 1e-9);
   EXPECT_DOUBLE_EQ(bone::EstimateResolution(20000.0, 3.0, 40000).sliceStep, 3.0);
-}
-
-TEST(Canvas, DrawsAPanelThroughItsWindow)
-{
-  bone::Panel panel;
-  panel.columns = 3;
-  panel.rows = 1;
-  panel.values = { 0.0F, 10.0F, std::nanf("") };
-  bone::Canvas canvas(3.0, 1.0, { { 9, 9, 9 } });
-  canvas.DrawPanel(0, 0, panel, { 0.0, 10.0 });
-  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 0, 0 } })[0], 0);
-  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 1, 0 } })[0], 255);
-  EXPECT_EQ(canvas.GetImage()->GetPixel({ { 2, 0 } })[0], 9);
 }

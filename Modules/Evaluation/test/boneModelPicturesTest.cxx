@@ -27,14 +27,28 @@ Model(double across)
 
 TEST(DrawShapeModes, PanelsHaveTheProportionsOfTheBone)
 {
-  constexpr int head = 30; // for the mode's name
-  constexpr int side = 420, least = 220;
+  constexpr double side = 420, margin = 12, beside = 2 * margin + 22 + 20; // above and below: title, scale bar, margins
   for (const double across : { 18.0, 40.0 })
   {
-    const auto   size = DrawShapeModes(*Model(across), 1, { 0, 1, 0 }, { 0, 0, 1 })->GetBufferedRegion().GetSize();
+    const Canvas canvas = DrawShapeModes(*Model(across), 1, { 0, 1, 0 }, { 0, 0, 1 });
     const double largest = std::max(across, 20.0);
-    EXPECT_NEAR(static_cast<double>(size[0]) / 3.0, std::max<double>(least, side * across / largest + 20), 3) << across;
-    EXPECT_NEAR(static_cast<double>(size[1]), side * 20.0 / largest + head, 3) << across;
+    EXPECT_NEAR(canvas.GetWidth(), 3.0 * (side * across / largest + 20 + margin) + margin, 6) << across;
+    EXPECT_NEAR(canvas.GetHeight(), side * 20.0 / largest + beside, 3) << across;
   }
+}
+
+TEST(DrawShapeModes, LettersAreLeftOutWhereTheModelHasNoPatientsAxes)
+{
+  const auto white = [](bool letters) {
+    const auto image = DrawShapeModes(*Model(40.0), 1, { 0, 1, 0 }, { 0, 0, 1 }, letters).GetImage();
+    int        count = 0;
+    for (long c = 12; c < 452; ++c)
+    {
+      // Along the middle of the first panel, whose background is dark.
+      count += image->GetPixel({ { c, 12 + 22 + 105 } })[0] > 200 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(white(true), white(false));
 }
 } // namespace

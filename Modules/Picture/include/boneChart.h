@@ -17,8 +17,9 @@ struct ChartAxis
 {
   std::string           label; ///< with its unit: "error (HU)"
   bool                  log{ false };
-  std::optional<double> lower; ///< default: that of the data, or the tick below
-  std::optional<double> upper; ///< default: that of the data, or the tick above
+  bool                  whole{ false }; ///< ticks at whole numbers alone: degrees, levels, modes
+  std::optional<double> lower;          ///< default: that of the data, or the tick below
+  std::optional<double> upper;          ///< default: that of the data, or the tick above
 };
 
 /** Points of a chart that belong together. */

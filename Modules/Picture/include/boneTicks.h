@@ -32,10 +32,14 @@ LogTicks(double lower, double upper, int most);
 double
 RoundInRange(double value, double range);
 
-/** A number as short as tells four digits of it, without an exponent from 0.0001 to a million: "0.05", "-120", "1e-06".
- */
+/** A number as short as tells so many digits of it, without an exponent from 0.0001 to a million: "0.05", "-120",
+ * "1e-06". */
 std::string
-TickText(double value);
+TickText(double value, int digits = 4);
+
+/** The texts of ascending ticks, of as many digits as tell each to a hundredth of their distance. */
+std::vector<std::string>
+TickTexts(const std::vector<double> & ticks);
 } // namespace bone
 
 #endif

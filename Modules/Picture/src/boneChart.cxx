@@ -81,7 +81,7 @@ MakeScale(const ChartAxis & axis, Range range)
   }
   if (!axis.log)
   {
-    const double step = NiceStep((scale.upper - scale.lower) / (MostTicks - 2));
+    const double step = std::max(NiceStep((scale.upper - scale.lower) / (MostTicks - 2)), axis.whole ? 1.0 : 0.0);
     scale.lower = axis.lower ? scale.lower : step * std::floor(scale.lower / step + 1e-9);
     scale.upper = axis.upper ? scale.upper : step * std::ceil(scale.upper / step - 1e-9);
   }
@@ -93,6 +93,11 @@ MakeScale(const ChartAxis & axis, Range range)
   }
   scale.ticks =
     axis.log ? LogTicks(scale.lower, scale.upper, MostTicks + 2) : LinearTicks(scale.lower, scale.upper, MostTicks);
+  if (axis.whole)
+  {
+    const auto part = [](double tick) { return std::abs(tick - std::round(tick)) > 1e-9; };
+    scale.ticks.erase(std::remove_if(scale.ticks.begin(), scale.ticks.end(), part), scale.ticks.end());
+  }
   return scale;
 }
 
@@ -114,9 +119,9 @@ double
 WidestTick(const Scale & scale)
 {
   double widest = 0.0;
-  for (const double tick : scale.ticks)
+  for (const std::string & text : TickTexts(scale.ticks))
   {
-    widest = std::max(widest, Canvas::MeasureText(TickText(tick), TickStyle));
+    widest = std::max(widest, Canvas::MeasureText(text, TickStyle));
   }
   return widest;
 }
@@ -169,12 +174,13 @@ DrawAxes(Canvas & canvas, const Plot & plot, const std::string & xLabel, const s
   TextStyle         style = TickStyle;
   style.align = TextAlign::Centre;
   style.height = TextHeight::Top;
-  double free = -std::numeric_limits<double>::max(); // where the last tick's number ends
-  for (const double tick : plot.x.ticks)
+  double     free = -std::numeric_limits<double>::max(); // where the last tick's number ends
+  const auto xTexts = TickTexts(plot.x.ticks), yTexts = TickTexts(plot.y.ticks);
+  for (std::size_t k = 0; k < xTexts.size(); ++k)
   {
-    const double      x = area.x + plot.x.Share(tick) * area.width;
-    const std::string text = TickText(tick);
-    const double      half = 0.5 * Canvas::MeasureText(text, style);
+    const double        x = area.x + plot.x.Share(plot.x.ticks[k]) * area.width;
+    const std::string & text = xTexts[k];
+    const double        half = 0.5 * Canvas::MeasureText(text, style);
     canvas.DrawLine({ x, area.y }, { x, bottom }, GridLine, 1.0);
     canvas.DrawLine({ x, bottom }, { x, bottom + 4.0 }, ChartInk, 1.0);
     if (x - half > free)
@@ -185,12 +191,12 @@ DrawAxes(Canvas & canvas, const Plot & plot, const std::string & xLabel, const s
   }
   style.align = TextAlign::Right;
   style.height = TextHeight::Middle;
-  for (const double tick : plot.y.ticks)
+  for (std::size_t k = 0; k < yTexts.size(); ++k)
   {
-    const double y = bottom - plot.y.Share(tick) * area.height;
+    const double y = bottom - plot.y.Share(plot.y.ticks[k]) * area.height;
     canvas.DrawLine({ area.x, y }, { area.x + area.width, y }, GridLine, 1.0);
     canvas.DrawLine({ area.x - 4.0, y }, { area.x, y }, ChartInk, 1.0);
-    canvas.DrawText({ area.x - 7.0, y }, TickText(tick), style);
+    canvas.DrawText({ area.x - 7.0, y }, yTexts[k], style);
   }
   canvas.DrawPolyline({ { area.x, area.y }, { area.x, bottom }, { area.x + area.width, bottom } }, ChartInk, 1.0);
   style = LabelStyle;
@@ -306,7 +312,8 @@ CountBins(const Histogram & histogram)
   }
   const double scale = std::max(std::abs(range.lower), std::abs(range.upper));
   // Values that are all alike fill one bin.
-  const double width = scale > 0.0 ? std::max(range.upper - range.lower, 1e-3 * scale) : 1.0;
+  const double extent = range.upper - range.lower;
+  const double width = extent > 1e-3 * scale ? extent : scale > 0.0 ? 0.1 * scale : 1.0;
   const double step = NiceStep(width / std::max(1, histogram.bins - 1));
   const double first = std::floor(range.lower / step + 1e-9);
   const double last = std::max(first + 1.0, std::ceil(range.upper / step - 1e-9));

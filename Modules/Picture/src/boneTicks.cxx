@@ -102,11 +102,29 @@ RoundInRange(double value, double range)
 }
 
 std::string
-TickText(double value)
+TickText(double value, int digits)
 {
   std::ostringstream text;
-  text.precision(std::abs(value) < 1e6 && std::abs(value) >= 1e4 ? 6 : 4);
+  text.precision(std::abs(value) < 1e6 && std::abs(value) >= 1e4 ? std::max(6, digits) : digits);
   text << value;
   return text.str();
+}
+
+std::vector<std::string>
+TickTexts(const std::vector<double> & ticks)
+{
+  const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 0.0;
+  int          digits = 4;
+  const auto isRounded = [&](double tick) { return std::abs(std::stod(TickText(tick, digits)) - tick) > 0.01 * step; };
+  while (step > 0.0 && digits < 15 && std::any_of(ticks.begin(), ticks.end(), isRounded))
+  {
+    ++digits;
+  }
+  std::vector<std::string> texts;
+  for (const double tick : ticks)
+  {
+    texts.push_back(TickText(tick, digits));
+  }
+  return texts;
 }
 } // namespace bone
