@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -53,6 +54,16 @@ ToDecimal(std::string & text)
   return "";
 }
 
+/** Whether an option says where to write. */
+bool
+IsOutput(const CLI::Option & option)
+{
+  static const std::regex output("output|write-.*|save-.*|report|registered");
+  const auto &            names = option.get_lnames();
+  return std::any_of(
+    names.begin(), names.end(), [](const std::string & name) { return std::regex_match(name, output); });
+}
+
 std::string
 CheckDecimal(std::string & text)
 {
@@ -85,14 +96,11 @@ ReadDecimalNumbers(CLI::App & app)
 std::vector<std::string>
 FindInputs(const CLI::App & command)
 {
-  static const std::regex  output("output|write-.*|save-.*|report|registered");
   std::vector<std::string> files;
   for (const CLI::Option * option : command.get_options())
   {
-    const auto & names = option->get_lnames();
-    const bool   writes =
-      std::any_of(names.begin(), names.end(), [](const std::string & name) { return std::regex_match(name, output); });
-    for (const std::string & text : writes ? std::vector<std::string>() : option->results())
+    const bool passed = IsOutput(*option) || option->check_lname("status");
+    for (const std::string & text : passed ? std::vector<std::string>() : option->results())
     {
       std::error_code error;
       if (std::filesystem::exists(text, error))
@@ -102,6 +110,49 @@ FindInputs(const CLI::App & command)
     }
   }
   return files;
+}
+
+std::vector<std::string>
+FindOutputs(const CLI::App & command)
+{
+  std::vector<std::string> outputs;
+  for (const CLI::Option * option : command.get_options())
+  {
+    const auto results = IsOutput(*option) ? option->results() : std::vector<std::string>();
+    outputs.insert(outputs.end(), results.begin(), results.end());
+  }
+  return outputs;
+}
+
+void
+VerifyStatusFile(const std::string & path, const std::vector<std::string> & outputs)
+{
+  if (path.empty())
+  {
+    return;
+  }
+  const auto absolute = [](const std::filesystem::path & file) {
+    std::error_code error;
+    const auto      resolved = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+    return error ? std::filesystem::absolute(file).lexically_normal() : resolved;
+  };
+  const std::string file = absolute(path).string();
+  for (const std::string & output : outputs)
+  {
+    if (output.empty())
+    {
+      continue;
+    }
+    const std::filesystem::path whole = absolute(output);
+    const std::string           name = whole.filename().string();
+    const std::string           stem = (whole.parent_path() / name.substr(0, name.find('.', 1))).string();
+    const bool begins = file.compare(0, stem.size(), stem) == 0 && std::strchr("/._", file[stem.size()]) != nullptr;
+    if (file == whole || (begins && !HasExtension(file, ".jsonl")))
+    {
+      throw UsageError("the status file " + path + " may take the name of an output of " + output +
+                       ": give it another, which ends in .jsonl");
+    }
+  }
 }
 
 CLI::Validator

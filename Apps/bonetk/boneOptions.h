@@ -37,6 +37,10 @@ ReadDecimalNumbers(CLI::App & app);
 std::vector<std::string>
 FindInputs(const CLI::App & command);
 
+/** What a parsed command's options say to write: files, folders and beginnings of names. */
+std::vector<std::string>
+FindOutputs(const CLI::App & command);
+
 /** Adds --axis x|y|z, the image axis that slices are stacked along, as 0, 1, 2. */
 void
 AddAxisOption(CLI::App * command, unsigned int & axis);
@@ -55,6 +59,12 @@ struct OutputFile
   std::string              path;
   std::vector<std::string> extensions; ///< of which it must have one; none: any
 };
+
+/** Throws UsageError where the status file (empty: there is none) has the name of one of a command's outputs
+ * (FindOutputs), or may have that of a file in the folder, or with the beginning, that an output is. One that ends in
+ * .jsonl has not: no output does. */
+void
+VerifyStatusFile(const std::string & path, const std::vector<std::string> & outputs);
 
 /** Whether all these files can be written, which is to be found out before the work. Throws UsageError where one has
  * another extension, cannot be written, or has the name of another. */

@@ -4,23 +4,35 @@
 #ifndef boneSession_h
 #define boneSession_h
 
-#include <itkProcessObject.h>
+#include "boneProgress.h"
+#include "boneStatusFile.h"
 
-#include <chrono>
+#include <itkProcessObject.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace bone
 {
 /** \class Session
- * \brief One run of a command: where its text goes, and what it warned of.
+ * \brief One run of a command: where its text goes, how far it is, and what it warned of.
  *
  * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
  * errors and warnings that the result is not what was asked for. Warnings of ITK filters become lines of this session
  * too. What the libraries below ITK print by themselves reaches nobody: while a session lives, only it has the
- * process's standard streams. */
+ * process's standard streams.
+ *
+ * Progress is known by stages: filters that are watched, and scopes of BeginStage(). From the first second on a
+ * terminal shows stage, share and time left; with `verbose` a line tells how long each stage took; `status` names a
+ * file of JSON lines for programs (Documentation/formats.md). A thread of its own writes them, five times a second at
+ * most, so that no stage waits for a reader. */
 class Session
 {
 public:
@@ -32,12 +44,30 @@ public:
 
   /** \name Options that all commands share
    * \{ */
-  bool quiet{ false };
-  int  threads{ 0 }; ///< 0: all processors
+  bool        quiet{ false };
+  bool        verbose{ false };
+  int         threads{ 0 }; ///< 0: all processors
+  std::string status;       ///< file for programs; empty: none
   /** \} */
   std::string              command;
+  std::string              commandLine; ///< as it was called
+  std::string              version;
   std::vector<std::string> inputs;  ///< files that the command line names
   std::string              subject; ///< of several that the command works on; warnings and errors name it
+
+  /** To be called before the work: opens the status file and writes its first line. Throws UsageError where it cannot
+   * be written. */
+  void
+  Start();
+
+  /** To be called after the work: writes the status file's last line. The first exit code that End() or Interrupt() is
+   * told is the process's; it is returned. */
+  int
+  End(int exitCode);
+
+  /** The same for a thread that waits for signals and ends the process: waits for nobody. */
+  int
+  Interrupt(int exitCode, const std::string & reason);
 
   /** Text for standard output. */
   void
@@ -64,8 +94,8 @@ public:
   void
   PrintAlways(const std::string & text);
 
-  /** To be called at the end. Throws std::runtime_error where text for standard output was lost, as on a full disk. One
-   * that nobody reads any more is no error: they have seen what they wanted. */
+  /** To be called at the end. Throws IOError where text for standard output or the status file was lost, as on a full
+   * disk. One that nobody reads any more is no error: they have seen what they wanted. */
   void
   Finish() const;
 
@@ -79,31 +109,105 @@ public:
   void
   ForgetWarnings(std::size_t count);
 
-  /** Shows the filter's progress on a terminal while it runs, from the first second of the command on. */
+  /** The stages to come, see Progress::Expect. Without it a watched filter's progress is the command's. */
+  void
+  Expect(const std::vector<ExpectedStage> & stages, double from = 0.0, double to = 1.0);
+
+  /** Makes each run of the filter a stage, as long as this session lives. */
   void
   Watch(itk::ProcessObject * filter, const std::string & name);
 
+  /** A run of a stage, from BeginStage() to the end of its scope. */
+  class Stage
+  {
+  public:
+    Stage(Session & session, const std::string & name);
+    ~Stage();
+    Stage(const Stage &) = delete;
+    Stage &
+    operator=(const Stage &) = delete;
+
+  private:
+    Session & m_Session;
+    int       m_Run;
+    int       m_Exceptions;
+  };
+
+  /** `const auto stage = session.BeginStage("reading");`: what is done until `stage` goes out of scope is that stage.
+   */
+  Stage
+  BeginStage(const std::string & name)
+  {
+    return { *this, name };
+  }
+
 private:
+  /** What the status file was told last. */
+  struct Shown
+  {
+    std::string stage{ "start" };
+    std::string subject;
+    double      share{ 0.0 };
+    std::size_t warnings{ 0 };
+  };
+
+  bool
+  ShowsProgress() const
+  {
+    return m_Terminal && !quiet;
+  }
   void
   WriteError(const std::string & text);
+  /** A line on standard error, in place of the progress. */
+  void
+  WriteLine(const std::string & line);
   /** "bonetk COMMAND: SUBJECT: " */
   std::string
   Heading() const;
   void
   Warn(const std::string & message, bool shown);
+  int
+  BeginRun(const std::string & name);
   void
-  ShowProgress(const std::string & name, double share);
+  EndRun(int run);
+  void
+  Tick();
+  void
+  ShowProgress();
   void
   ClearProgress();
+  double
+  Seconds() const;
+  /** The status file's line of now with the warnings from `first` on, and with `more` members; m_Mutex is held, or
+   * nobody else writes any more. */
+  std::string
+  StatusLine(const std::string & stage, std::size_t first, const nlohmann::ordered_json & more) const;
+  std::string
+  EndLine(int exitCode) const;
 
-  std::vector<std::string>              m_Warnings;
-  std::mutex                            m_Mutex;
-  std::chrono::steady_clock::time_point m_Start;
-  int                                   m_Output; ///< where standard output went
-  int                                   m_Error;
-  bool                                  m_Terminal;
-  std::string                           m_Shown;
-  int                                   m_PrintError{ 0 }; ///< of errno
+  Progress::Clock::time_point m_Start;
+  int                         m_Output; ///< where standard output went
+  int                         m_Error;
+  bool                        m_Terminal;
+  int                         m_PrintError{ 0 }; ///< of errno
+
+  mutable std::timed_mutex m_Mutex; ///< of the work's state; never held while something is written
+  Progress                 m_Progress;
+  std::vector<std::string> m_Warnings;
+  std::vector<std::string> m_AllWarnings; ///< of the status file: with subjects, none forgotten
+  std::string              m_Failure;     ///< the last one
+  std::string              m_Subject;     ///< as the status file tells it
+
+  std::mutex  m_ErrorMutex; ///< of standard error
+  std::string m_ProgressLine;
+
+  std::unique_ptr<StatusFile> m_StatusFile;
+  Shown                       m_Told;
+  std::atomic<int>            m_Exit{ -1 };
+  std::thread                 m_Ticker;
+  std::mutex                  m_TickerMutex;
+  std::condition_variable     m_TickerStop;
+  bool                        m_Stopping{ false };
 };
 
 /** A usage error found after parsing: exit code 2. */

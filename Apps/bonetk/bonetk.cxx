@@ -34,6 +34,12 @@ AddSharedOptions(CLI::App & app, bone::Session & session)
     }
     command->add_flag(
       "-q,--quiet", session.quiet, "Print errors, and warnings that the result is not what was asked for, alone");
+    command->add_flag("--verbose", session.verbose, "Print how long each stage took")->excludes("--quiet");
+    command
+      ->add_option("--status",
+                   session.status,
+                   "Write progress for programs while the work goes: JSON lines in a file, a named pipe or /dev/fd/N")
+      ->type_name("FILE");
     command
       ->add_option("--threads", session.threads, "Number of threads; default: all processors. Does not change results")
       ->check(CLI::Range(1, 1024).description(""));
@@ -101,15 +107,36 @@ NameOfChosen(const CLI::App & app)
   return name;
 }
 
-/** Parses the command line. Returns true where there is something to do, else sets the exit code. */
+/** The words of a command line, with quotes about those that a shell would take apart. */
+std::string
+JoinArguments(int argc, char ** argv)
+{
+  std::string line;
+  for (int i = 0; i < argc; ++i)
+  {
+    const std::string word = i == 0 ? "bonetk" : argv[i];
+    const bool        plain = !word.empty() && word.find_first_of(" \t\n'\"\\$&|;<>()*?[]#~`") == std::string::npos;
+    line += (i == 0 ? "" : " ") + (plain ? word : "'" + word + "'");
+  }
+  return line;
+}
+
+/** Parses the command line. Returns true where there is something to do and sets what its options say to write, else
+ * sets the exit code. */
 bool
-Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exitCode)
+Parse(CLI::App &                 app,
+      int                        argc,
+      char **                    argv,
+      bone::Session &            session,
+      std::vector<std::string> & outputs,
+      int &                      exitCode)
 {
   try
   {
     app.parse(argc, argv);
     session.command = NameOfChosen(app);
     session.inputs = bone::FindInputs(ChosenCommand(app));
+    outputs = bone::FindOutputs(ChosenCommand(app));
     return true;
   }
   catch (const CLI::ParseError & error)
@@ -137,12 +164,14 @@ Parse(CLI::App & app, int argc, char ** argv, bone::Session & session, int & exi
   }
 }
 
-/** Does the work: its outputs appear together or not at all. */
+/** Does the work: its outputs appear together or not at all. `names` are those that its options say. */
 int
-Run(const bone::Action & action, bone::Session & session)
+Run(const bone::Action & action, const std::vector<std::string> & names, bone::Session & session)
 {
   try
   {
+    bone::VerifyStatusFile(session.status, names);
+    session.Start();
     bone::OutputTransaction outputs;
     action(session);
     outputs.Commit();
@@ -170,8 +199,12 @@ int
 main(int argc, char ** argv)
 {
   bone::InstallSignalHandling();
-  bone::Session session;
-  bone::Action  action;
+  bone::Session         session;
+  bone::Action          action;
+  const bone::LastWords last(
+    [&session](int exitCode, const std::string & reason) { return session.Interrupt(exitCode, reason); });
+  session.version = BONETK_VERSION;
+  session.commandLine = JoinArguments(argc, argv);
 
   CLI::App app(
     "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage.",
@@ -203,8 +236,9 @@ main(int argc, char ** argv)
   AddSharedOptions(app, session);
   bone::ReadDecimalNumbers(app);
 
-  int exitCode = Success;
-  if (!Parse(app, argc, argv, session, exitCode))
+  int                      exitCode = Success;
+  std::vector<std::string> outputs;
+  if (!Parse(app, argc, argv, session, outputs, exitCode))
   {
     return exitCode;
   }
@@ -213,7 +247,7 @@ main(int argc, char ** argv)
     itk::MultiThreaderBase::SetGlobalMaximumNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
     itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(session.threads));
   }
-  exitCode = Run(action, session);
+  exitCode = session.End(Run(action, outputs, session));
   bone::OutputTransaction::FinishAll();
   return exitCode;
 }

@@ -103,7 +103,7 @@ class Outputs(TestCase):
 
     def test_interrupted(self):
         self.interrupted(signal.SIGINT, 130, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
-        self.interrupted(signal.SIGTERM, 1, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
+        self.interrupted(signal.SIGTERM, 143, ["build", "ct.nii.gz", *BUILD, "-o", "out"])
         self.interrupted(signal.SIGINT, 130, ["phantom", "--spacing", "1", "-o", "big.nii.gz"])
 
     def full_disk(self, limit, *arguments):

@@ -170,7 +170,30 @@ struct BuildJob
   std::string folder;
   double      secondsOfReading{ 0.0 };
   std::string registration; ///< of the atlas, as JSON; empty without one
+  double      from{ 0.0 };  ///< its work begins at this share of the command's
+  double      to{ 1.0 };
 };
+
+/** Of the command's progress: reading the CT, or finding the bone in it by an atlas. */
+constexpr double shareOfReading = 0.03, shareOfAtlas = 0.6;
+
+/** The stages of a build, with the seconds of a bone of 30,000 tetrahedra. */
+void
+ExpectStages(const BuildJob & job, const BuildPlanParameters & plan, Session & session)
+{
+  const int                  trials = plan.contourSpacing > 0.0 ? 1 : 4;
+  std::vector<ExpectedStage> stages{ { "contours", 2.0, job.input.bone.labels ? 1 : 2 },
+                                     { "slices", 0.3, trials },
+                                     { "resample", 0.1, trials },
+                                     { "medial axis", 0.05, trials },
+                                     { "tiling", 1.2, trials },
+                                     { "quality", 5.0 },
+                                     { "fit", 0.4 },
+                                     { "collapse", 3.0 },
+                                     { "evaluation", 2.5 },
+                                     { "writing", 1.0 } };
+  session.Expect(stages, job.from, job.to);
+}
 
 BuildReport
 BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job, Session & session)
@@ -194,6 +217,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   VerifyFolder(job.folder);
   const BuildInput input = CropToBone(ct, bone.labels, job.input.contours, plan);
 
+  ExpectStages(job, plan, session);
   BuildPipeline pipeline(plan.levels.size() + 1);
   StageClock    clock(pipeline.GetStages());
   for (const auto & [name, filter] : pipeline.GetStages())
@@ -215,7 +239,10 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
 
   Lap              lap;
-  const Evaluation evaluation = Evaluate(pipeline, { input.ct, input.mask, ct });
+  const Evaluation evaluation = [&] {
+    const auto stage = session.BeginStage("evaluation");
+    return Evaluate(pipeline, { input.ct, input.mask, ct });
+  }();
   report.times.emplace_back("evaluation", lap());
   pipeline.GetParameters(parameters);
   report.parameters = parameters;
@@ -229,7 +256,10 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
     session.WarnAlways(doubt);
   }
   report.warnings = session.GetWarnings();
-  WriteOutputs(evaluation, report, pipeline, staging);
+  {
+    const auto stage = session.BeginStage("writing");
+    WriteOutputs(evaluation, report, pipeline, staging);
+  }
   session.Print("\n" + ToText(report) + "\nwritten to " + job.folder + "\n");
   return report;
 }
@@ -250,6 +280,7 @@ FolderName(const LabelledBone & bone)
 std::vector<BuildJob>
 JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds)
 {
+  const double          part = (1.0 - shareOfReading) / static_cast<double>(bones.size());
   std::vector<BuildJob> jobs;
   std::set<std::string> names;
   for (BoneInput & input : bones)
@@ -259,7 +290,8 @@ JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds)
     {
       throw UsageError("--label: " + name.substr(1) + " is the folder of two bones; build one of them by itself");
     }
-    jobs.push_back({ std::move(input), folder + name, seconds, "" });
+    const double from = shareOfReading + static_cast<double>(jobs.size()) * part;
+    jobs.push_back({ std::move(input), folder + name, seconds, "", from, from + part });
   }
   return jobs;
 }
@@ -329,7 +361,7 @@ FindByAtlas(const BuildOptions & options, const CTImage * ct, Session & session)
 {
   const auto          found = FindInCT(options.atlas.file, ct, options.atlas.parameters, session);
   LabelImage::Pointer labels = MaskOfLabel(found->GetLabelImage(), 0);
-  BuildJob            job{ { { labels, 1, "" }, nullptr }, options.output, 0.0, "" };
+  BuildJob            job{ { { labels, 1, "" }, nullptr }, options.output, 0.0, "", shareOfAtlas };
   job.registration = ReportRegistration(found->GetResult()).dump();
   return job;
 }
@@ -347,16 +379,22 @@ RunBuild(const BuildOptions & given, Session & session)
     const StagingFolder probe(options.output);
     VerifyFolder(options.output);
   }
+  const bool atlas = !options.atlas.file.empty();
+  session.Expect(
+    { { "reading", 1.0 }, { "register", atlas ? 30.0 : 0.0 } }, 0.0, atlas ? shareOfAtlas : shareOfReading);
+  auto                   reading = std::make_unique<Session::Stage>(session, "reading");
   Lap                    lap;
   const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
-  if (!options.atlas.file.empty())
+  if (atlas)
   {
+    reading.reset();
     BuildJob job = FindByAtlas(options, ct, session);
     job.secondsOfReading = lap();
     BuildBone(options, ct, job, session);
     return;
   }
-  auto       bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
+  auto bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
+  reading.reset();
   const auto jobs = JobsOf(std::move(bones), options.output, lap());
   if (jobs.size() == 1)
   {

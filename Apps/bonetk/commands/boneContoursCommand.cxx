@@ -91,6 +91,13 @@ RunContours(const ContoursOptions & options, Session & session)
   const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
   const BoneInput        read = ReadBones(options.bone, parameters.plan.axis, ct, session).front();
   parameters.plan.label = read.bone.label;
+  const int trials = options.tetrahedra ? 4 : 0;
+  session.Expect({ { "contours", 2.0 },
+                   { "slices", 0.3, std::max(1, trials) },
+                   { "resample", 0.1, std::max(1, trials) },
+                   { "medial axis", 0.05, std::max(1, trials) },
+                   { "tiling", 1.2, trials },
+                   { "quality", options.tetrahedra ? 5.0 : 0.0 } });
   BuildPipeline pipeline(1);
   for (const auto & [name, filter] : pipeline.GetStages())
   {

@@ -66,6 +66,7 @@ RunLabel(const LabelCommandOptions & options, Session & session)
   {
     throw UsageError("no bone to find: give --atlas, or --mirrored for a bone of the other side");
   }
+  session.Expect({ { "register", 1.0, static_cast<int>(jobs.size()) } });
   const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
   auto                   labels = LabelImage::New();
   labels->CopyInformation(ct);

@@ -176,7 +176,11 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
   VerifyOutputs(files);
   RegisterRigidOptions chosen = options;
   ApplySearch(options.views, chosen.rigid);
-  const auto views = ReadRegistrationViews(chosen.views, session);
+  session.Expect({ { "reading", 1.0 }, { "register", 10.0 }, { "writing", 1.0 } });
+  const auto views = [&] {
+    const auto stage = session.BeginStage("reading");
+    return ReadRegistrationViews(chosen.views, session);
+  }();
   const auto start = std::chrono::steady_clock::now();
   auto       registration = Registration::New();
   registration->SetParameters(chosen.rigid);
@@ -190,6 +194,7 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
   session.Watch(registration, "register");
   registration->Update();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto   stage = session.BeginStage("writing");
   const auto   corrected = CorrectViews(chosen, views, registration->GetViewCorrections());
   for (unsigned int body = 0; body < models.size(); ++body)
   {

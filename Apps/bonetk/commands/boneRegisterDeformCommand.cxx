@@ -102,8 +102,11 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   VerifyDeformOptions(options);
   DeformableRadiographParameters parameters = options.deformable;
   ApplySearch(options.views, parameters);
+  session.Expect({ { "reading", 1.0 }, { "register", 20.0 }, { "writing", 1.0 } });
+  auto       reading = std::make_unique<Session::Stage>(session, "reading");
   const auto atlas = ReadAtlasWithDensity(options.model);
   const auto views = ReadRegistrationViews(options.views, session);
+  reading.reset();
   if (parameters.intensities &&
       std::any_of(views.begin(), views.end(), [](const PreparedView & view) { return view.monotoneOnly; }))
   {
@@ -118,6 +121,7 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   session.Watch(registration, "register");
   registration->Update();
 
+  const auto   stage = session.BeginStage("writing");
   const auto & result = registration->GetResult();
   WriteMeshArrays(result.mesh, options.output + ".vtu");
   WriteRigidTransform(*registration->GetTransform(), options.output + ".tfm");

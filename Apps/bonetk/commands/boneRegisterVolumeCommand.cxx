@@ -38,9 +38,14 @@ RunRegisterVolume(const RegisterVolumeOptions & options, Session & session)
                   { output + ".tfm", {} },
                   { output + ".json", {} },
                   { output + "_posterior.h5", {} } });
-  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
-  const auto             registration = FindInCT(options.model, ct, options.parameters, session);
-  const auto &           result = registration->GetResult();
+  session.Expect({ { "reading", 1.0 }, { "register", 30.0 }, { "writing", 2.0 } });
+  const CTImage::Pointer ct = [&] {
+    const auto stage = session.BeginStage("reading");
+    return ReadChosenCT(options.ct, options.series, session);
+  }();
+  const auto   registration = FindInCT(options.model, ct, options.parameters, session);
+  const auto   stage = session.BeginStage("writing");
+  const auto & result = registration->GetResult();
   WriteMeshArrays(result.mesh, output + ".vtu");
   WriteImage(registration->GetLabelImage(), output + "_labels.nii.gz");
   WriteRigidTransform(*result.pose.ToTransform(), output + ".tfm");

@@ -54,7 +54,11 @@ RunSimplify(const SimplifyOptions & options, Session & session)
   TetraCollapseParameters parameters = options.parameters;
   Verify(parameters);
   VerifyOutputs({ { options.prefix + ".hierarchy.json", {} } });
-  const auto mesh = ReadDensityMesh(options.mesh);
+  session.Expect({ { "reading", 0.2 }, { "simplification", 3.0 }, { "writing", 0.3 } });
+  const auto mesh = [&] {
+    const auto stage = session.BeginStage("reading");
+    return ReadDensityMesh(options.mesh);
+  }();
   if (options.levels || (parameters.levels.empty() && parameters.maximumDensityErrors.empty() &&
                          parameters.maximumCellErrors.empty() && parameters.maximumSurfaceDistances.empty()))
   {
@@ -72,6 +76,7 @@ RunSimplify(const SimplifyOptions & options, Session & session)
   collapse->SetParameters(parameters);
   session.Watch(collapse, "simplification");
   collapse->Update();
+  const auto stage = session.BeginStage("writing");
   WriteHierarchy(collapse->GetOutput(), options.prefix, options.storage);
 }
 } // namespace

@@ -70,6 +70,8 @@ RunTrain(const TrainOptions & options, Session & session)
   PopulationRegistration population(ReadDensityMesh(standard), options.degree);
   VerifySubjects(subjects);
   population.GetFilter()->SetParameters(options.registration);
+  session.Expect(
+    { { "registration", 10.0, static_cast<int>(subjects.size()) }, { "training", 2.0 }, { "writing", 1.0 } });
   session.Watch(population.GetFilter(), "registration");
 
   // Registered subjects go to files, so that only one is in memory at a time.
@@ -118,6 +120,7 @@ RunTrain(const TrainOptions & options, Session & session)
       session.Warn(os.str());
     }
   }
+  const auto writing = session.BeginStage("writing");
   WriteStatisticalModel(estimator->GetOutput(), options.output);
   if (!options.registered.empty())
   {
