@@ -353,6 +353,7 @@ Canvas::GetSvg(const std::string & idPrefix) const
 {
   std::string        text;
   const CairoSurface surface(cairo_svg_surface_create_for_stream(Append, &text, m_Width, m_Height));
+  cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
   Finish(surface.get(), m_Drawing->surface.get(), 1.0);
   cairo_surface_finish(surface.get());
   VerifyStatus(cairo_surface_status(surface.get()));

@@ -159,6 +159,8 @@ TEST(Canvas, SvgIsWellFormedAndRefersToItself)
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromString(svg.c_str()));
   ASSERT_NE(root, nullptr);
   EXPECT_STREQ(root->GetName(), "svg");
+  EXPECT_STREQ(root->GetAttribute("width"), "120px");
+  EXPECT_STREQ(root->GetAttribute("height"), "60px");
   const auto                  ids = Ids(svg, " id=\"", '"');
   const std::set<std::string> distinct(ids.begin(), ids.end());
   EXPECT_FALSE(ids.empty());
