@@ -6,8 +6,14 @@ import { join } from 'node:path';
 export async function openBrowser() {
   const puppeteer = createRequire(join(process.env.BONETK_PAGE_MODULES, 'package.json'))('puppeteer-core');
   return puppeteer.launch({
-    executablePath: process.env.BONETK_CHROMIUM, headless: 'shell',
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-           '--ignore-gpu-blocklist']
+    executablePath: process.env.BONETK_CHROMIUM,
+    headless: 'shell',
+    args: [
+      '--no-sandbox',
+      '--use-gl=angle',
+      '--use-angle=swiftshader',
+      '--enable-unsafe-swiftshader',
+      '--ignore-gpu-blocklist'
+    ]
   });
 }

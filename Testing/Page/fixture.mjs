@@ -4,8 +4,14 @@ import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { coefficientCount, evaluate } from '../../Modules/Report/page/src/bernstein.js';
 
-const typeNames = new Map([[Uint8Array, 'uint8'], [Int16Array, 'int16'], [Uint16Array, 'uint16'], [Uint32Array, 'uint32'],
-  [Int32Array, 'int32'], [Float32Array, 'float32']]);
+const typeNames = new Map([
+  [Uint8Array, 'uint8'],
+  [Int16Array, 'int16'],
+  [Uint16Array, 'uint16'],
+  [Uint32Array, 'uint32'],
+  [Int32Array, 'int32'],
+  [Float32Array, 'float32']
+]);
 
 /** An array as the page's data holds it. delta and planes as arrays.js takes them; step and offset are only noted. */
 export function encodeArray(values, { planes = false, delta = 0, step, offset } = {}) {
@@ -26,7 +32,11 @@ export function encodeArray(values, { planes = false, delta = 0, step, offset } 
       }
     }
   }
-  const array = { type: typeNames.get(values.constructor), length: values.length, data: gzipSync(bytes).toString('base64') };
+  const array = {
+    type: typeNames.get(values.constructor),
+    length: values.length,
+    data: gzipSync(bytes).toString('base64')
+  };
   return { ...array, ...(planes && { planes }), ...(delta && { delta }), ...(step !== undefined && { step, offset }) };
 }
 
@@ -49,14 +59,20 @@ function interpolation(degree) {
       }
     }
   }
-  const rows = points.map((point, r) => [...Array(count).keys()].map((c) => {
-    const unit = new Float64Array(count);
-    unit[c] = 1;
-    return evaluate(unit, 0, degree, ...point);
-  }).concat(points.map((_, c) => (c === r ? 1 : 0))));
+  const rows = points.map((point, r) =>
+    [...Array(count).keys()]
+      .map((c) => {
+        const unit = new Float64Array(count);
+        unit[c] = 1;
+        return evaluate(unit, 0, degree, ...point);
+      })
+      .concat(points.map((_, c) => (c === r ? 1 : 0)))
+  );
   for (let pivot = 0; pivot < count; ++pivot) {
-    const best = rows.slice(pivot).reduce((most, row, i) =>
-      (Math.abs(row[pivot]) > Math.abs(rows[pivot + most][pivot]) ? i : most), 0) + pivot;
+    const best =
+      rows
+        .slice(pivot)
+        .reduce((most, row, i) => (Math.abs(row[pivot]) > Math.abs(rows[pivot + most][pivot]) ? i : most), 0) + pivot;
     [rows[pivot], rows[best]] = [rows[best], rows[pivot]];
     const scale = rows[pivot][pivot];
     rows[pivot] = rows[pivot].map((value) => value / scale);
@@ -78,8 +94,9 @@ export function fitDensities({ points, tetrahedra, regions }, functions, degreeO
   regions.forEach((region, cell) => {
     const { points: domain, matrix } = rules.get(degrees[cell]);
     const values = domain.map((barycentric) => {
-      const position = [0, 1, 2].map((i) => barycentric.reduce(
-        (sum, weight, vertex) => sum + weight * points[3 * tetrahedra[4 * cell + vertex] + i], 0));
+      const position = [0, 1, 2].map((i) =>
+        barycentric.reduce((sum, weight, vertex) => sum + weight * points[3 * tetrahedra[4 * cell + vertex] + i], 0)
+      );
       return functions[region](...position);
     });
     matrix.forEach((row) => coefficients.push(row.reduce((sum, weight, i) => sum + weight * values[i], 0)));
@@ -88,8 +105,8 @@ export function fitDensities({ points, tetrahedra, regions }, functions, degreeO
 }
 
 /**
- * A box of n cubes along each edge, six tetrahedra each, mapped by `map` from [-1, 1]^3, with region 1 in the outer layer,
- * 2 within it and 3 at the core.
+ * A box of n cubes along each edge, six tetrahedra each, mapped by `map` from [-1, 1]^3, with region 1 in the outer
+ * layer, 2 within it and 3 at the core.
  */
 export function layeredBox(counts, map) {
   const [nx, ny, nz] = counts;
@@ -102,13 +119,26 @@ export function layeredBox(counts, map) {
     }
   }
   const vertex = (i, j, k) => i + (nx + 1) * (j + (ny + 1) * k);
-  const orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+  const orders = [
+    [0, 1, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [0, 2, 1],
+    [2, 1, 0],
+    [1, 0, 2]
+  ];
   const tetrahedra = [];
   const regions = [];
   for (let k = 0; k < nz; ++k) {
     for (let j = 0; j < ny; ++j) {
       for (let i = 0; i < nx; ++i) {
-        const reach = Math.max(...[[i, nx], [j, ny], [k, nz]].map(([index, n]) => Math.abs((2 * index + 1) / n - 1)));
+        const reach = Math.max(
+          ...[
+            [i, nx],
+            [j, ny],
+            [k, nz]
+          ].map(([index, n]) => Math.abs((2 * index + 1) / n - 1))
+        );
         orders.forEach((order, index) => {
           const corner = [i, j, k];
           const path = [vertex(...corner)];
@@ -123,7 +153,9 @@ export function layeredBox(counts, map) {
     }
   }
   return {
-    points: Float64Array.from(points), tetrahedra: Uint32Array.from(tetrahedra), regions: Uint8Array.from(regions)
+    points: Float64Array.from(points),
+    tetrahedra: Uint32Array.from(tetrahedra),
+    regions: Uint8Array.from(regions)
   };
 }
 
@@ -147,18 +179,28 @@ export function levelOf(name, mesh) {
   const pointStep = 0.001;
   const density = mesh.coefficients && {
     degrees: encodeArray(mesh.degrees),
-    coefficients: encodeArray(Int16Array.from(mesh.coefficients, (value) => Math.round(value / 0.25)),
-      { planes: true, step: 0.25, offset: 0 })
+    coefficients: encodeArray(
+      Int16Array.from(mesh.coefficients, (value) => Math.round(value / 0.25)),
+      { planes: true, step: 0.25, offset: 0 }
+    )
   };
   return {
-    name, points: encodeArray(Int32Array.from(mesh.points, (value) => Math.round(value / pointStep)),
-      { planes: true, delta: 3, step: pointStep, offset: [0, 0, 0] }),
-    tetrahedra: encodeArray(mesh.tetrahedra, { planes: true, delta: 4 }), regions: encodeArray(mesh.regions), ...density
+    name,
+    points: encodeArray(
+      Int32Array.from(mesh.points, (value) => Math.round(value / pointStep)),
+      { planes: true, delta: 3, step: pointStep, offset: [0, 0, 0] }
+    ),
+    tetrahedra: encodeArray(mesh.tetrahedra, { planes: true, delta: 4 }),
+    regions: encodeArray(mesh.regions),
+    ...density
   };
 }
 
 const description = {
-  unit: 'HU', quantity: 'CT number', range: [-200, 1600], regions: { 1: 'cortical', 2: 'trabecular', 3: 'cavity' }
+  unit: 'HU',
+  quantity: 'CT number',
+  range: [-200, 1600],
+  regions: { 1: 'cortical', 2: 'trabecular', 3: 'cavity' }
 };
 
 function contoursOf(count) {
@@ -172,17 +214,30 @@ function contoursOf(count) {
     }
   }
   return {
-    name: 'periosteal', color: '#ff463c', counts: encodeArray(new Uint16Array(count).fill(48)),
-    closed: encodeArray(new Uint8Array(count).fill(1)), points: encodeArray(Float32Array.from(points))
+    name: 'periosteal',
+    color: '#ff463c',
+    counts: encodeArray(new Uint16Array(count).fill(48)),
+    closed: encodeArray(new Uint8Array(count).fill(1)),
+    points: encodeArray(Float32Array.from(points))
   };
 }
 
 /** The page's model; counts: cubes along each edge, by level. */
-export function modelData(counts = [[12, 12, 16], [6, 6, 8]]) {
+export function modelData(
+  counts = [
+    [12, 12, 16],
+    [6, 6, 8]
+  ]
+) {
   return {
-    ...description, levels: counts.map((n, i) => levelOf(`level ${i + 1}`, boneMesh(n))), contours: [contoursOf(18)],
-    landmarks: [{ name: 'left bump', position: boneShape(1, 0, 0.55) }, { name: 'top', position: boneShape(0, 0, 1) },
-                { name: 'front', position: boneShape(0, -1, 0) }]
+    ...description,
+    levels: counts.map((n, i) => levelOf(`level ${i + 1}`, boneMesh(n))),
+    contours: [contoursOf(18)],
+    landmarks: [
+      { name: 'left bump', position: boneShape(1, 0, 0.55) },
+      { name: 'top', position: boneShape(0, 0, 1) },
+      { name: 'front', position: boneShape(0, -1, 0) }
+    ]
   };
 }
 
@@ -200,18 +255,30 @@ export function slicesData({ columns = 120, rows = 96, count = 9 } = {}) {
         values[(slice * rows + row) * columns + column] = Math.round((unit + 1000) / 12);
       }
     }
-    const ring = (factor) => [...Array(60).keys()].flatMap((i) => {
-      const angle = (2 * Math.PI * i) / 60;
-      return [(0.5 + 0.5 * factor * size * Math.cos(angle)) * (columns - 1),
-              (0.5 + 0.5 * factor * size * Math.sin(angle)) * (rows - 1)];
-    });
-    contours.push([{ name: 'periosteal', color: '#ff463c', closed: true, points: ring(1) },
-                   { name: 'endosteal', color: '#3cb4ff', closed: true, points: ring(0.8) }]);
+    const ring = (factor) =>
+      [...Array(60).keys()].flatMap((i) => {
+        const angle = (2 * Math.PI * i) / 60;
+        return [
+          (0.5 + 0.5 * factor * size * Math.cos(angle)) * (columns - 1),
+          (0.5 + 0.5 * factor * size * Math.sin(angle)) * (rows - 1)
+        ];
+      });
+    contours.push([
+      { name: 'periosteal', color: '#ff463c', closed: true, points: ring(1) },
+      { name: 'endosteal', color: '#3cb4ff', closed: true, points: ring(0.8) }
+    ]);
   }
   return {
-    columns, rows, count, pixel: 0.5, values: encodeArray(values, { step: 12, offset: -1000 }), unit: 'HU',
-    window: [-200, 1500], letters: { left: 'R', right: 'L', top: 'A', bottom: 'P' },
-    titles: [...Array(count).keys()].map((i) => `CT slice ${i + 1}, z = ${(-120 + 2.5 * i).toFixed(1)} mm`), contours
+    columns,
+    rows,
+    count,
+    pixel: 0.5,
+    values: encodeArray(values, { step: 12, offset: -1000 }),
+    unit: 'HU',
+    window: [-200, 1500],
+    letters: { left: 'R', right: 'L', top: 'A', bottom: 'P' },
+    titles: [...Array(count).keys()].map((i) => `CT slice ${i + 1}, z = ${(-120 + 2.5 * i).toFixed(1)} mm`),
+    contours
   };
 }
 
@@ -226,13 +293,20 @@ export function atlasData(counts = [6, 6, 8]) {
     return encodeArray(moved);
   };
   return {
-    ...description, mean: levelOf('mean', mesh),
-    shape: [{ share: 0.43, displacements: mode((x, y, z) => [0, 0, 0.08 * z]) },
-            { share: 0.21, displacements: mode((x, y) => [0.1 * x, 0.1 * y, 0]) }],
+    ...description,
+    mean: levelOf('mean', mesh),
+    shape: [
+      { share: 0.43, displacements: mode((x, y, z) => [0, 0, 0.08 * z]) },
+      { share: 0.21, displacements: mode((x, y) => [0.1 * x, 0.1 * y, 0]) }
+    ],
     density: [{ share: 0.61, coefficients: encodeArray(new Float32Array(mesh.coefficients.length).fill(60)) }],
     view: {
-      source: [0, -800, 0], detectorOrigin: [-47.5, 200, 79.5], detectorU: [1, 0, 0], detectorV: [0, 0, -1],
-      size: [96, 160], spacing: [1, 1]
+      source: [0, -800, 0],
+      detectorOrigin: [-47.5, 200, 79.5],
+      detectorU: [1, 0, 0],
+      detectorV: [0, 0, -1],
+      size: [96, 160],
+      spacing: [1, 1]
     },
     letters: { left: 'R', right: 'L', top: 'S', bottom: 'I' }
   };
@@ -254,13 +328,17 @@ export function writePage(path, data, bundle, edit = (html) => html) {
 </head>
 <body>
 <header><h1>${data.name}</h1><p>BoneTK report of a synthetic solid</p>
-<nav><a href="#summary">Summary</a> ${parts.map((id) => `<a href="#section-${id}">${sections[id]}</a>`).join(' ')}</nav></header>
+<nav><a href="#summary">Summary</a>
+${parts.map((id) => `<a href="#section-${id}">${sections[id]}</a>`).join(' ')}</nav></header>
 <main>
 <section class="warnings" role="status"><h2>Warnings</h2><ul><li>This is a test page.</li></ul></section>
 <section id="summary"><h2>Summary</h2>
-<table><caption>Volumes by region</caption><thead><tr><th scope="col">Region</th><th scope="col">Volume (cm\u00b3)</th></tr></thead>
-<tbody><tr><th scope="row">cortical</th><td>41.3</td></tr><tr><th scope="row">trabecular</th><td>28.0</td></tr></tbody></table>
-<details><summary>All parameters</summary><table><tbody><tr><th scope="row">degree</th><td>3</td></tr></tbody></table></details>
+<table><caption>Volumes by region</caption>
+<thead><tr><th scope="col">Region</th><th scope="col">Volume (cm\u00b3)</th></tr></thead>
+<tbody><tr><th scope="row">cortical</th><td>41.3</td></tr><tr><th scope="row">trabecular</th><td>28.0</td></tr></tbody>
+</table>
+<details><summary>All parameters</summary>
+<table><tbody><tr><th scope="row">degree</th><td>3</td></tr></tbody></table></details>
 </section>
 ${parts.map((id) => `<section id="section-${id}"><h2>${sections[id]}</h2><div id="${id}"></div></section>`).join('\n')}
 </main>

@@ -1,6 +1,6 @@
-// Runs a script of this folder with Chromium: node run.mjs FOLDER BUNDLE SCRIPT [--test]. FOLDER receives the packages of
-// package-lock.json, BUNDLE is the folder of the page's bundle. Exits 77 (skipped) where Chromium, the packages or the
-// bundle cannot be had.
+// Runs a script of this folder with Chromium: node run.mjs FOLDER BUNDLE SCRIPT [--test]. FOLDER receives the packages
+// of package-lock.json, BUNDLE is the folder of the page's bundle. Exits 77 (skipped) where Chromium, the packages or
+// the bundle cannot be had.
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -24,8 +24,11 @@ function install() {
   for (const name of ['package.json', 'package-lock.json']) {
     copyFileSync(new URL(name, import.meta.url), join(folder, name));
   }
-  const npm = spawnSync('npm', ['ci', '--ignore-scripts', '--no-audit', '--no-fund', '--prefer-offline', '--fetch-retries=1'],
-    { cwd: folder, encoding: 'utf8' });
+  const npm = spawnSync(
+    'npm',
+    ['ci', '--ignore-scripts', '--no-audit', '--no-fund', '--prefer-offline', '--fetch-retries=1'],
+    { cwd: folder, encoding: 'utf8' }
+  );
   if (npm.status !== 0) {
     skip(`npm ci failed: ${npm.stderr?.split('\n')[0] ?? npm.error}`);
   }

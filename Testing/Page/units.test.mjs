@@ -1,7 +1,8 @@
 // The page's pure functions: arrays, polynomials, surfaces, cuts, radiographs, numbers.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { decodeArray } from '../../Modules/Report/page/src/arrays.js';
+import { gzipSync } from 'node:zlib';
+import { decodeArray, decodeJson } from '../../Modules/Report/page/src/arrays.js';
 import { combine } from '../../Modules/Report/page/src/modes.js';
 import { coefficientCount, evaluate } from '../../Modules/Report/page/src/bernstein.js';
 import { coloursOfDensities, densityColour } from '../../Modules/Report/page/src/colours.js';
@@ -60,7 +61,11 @@ function boxMesh(counts, degree = 3, density = cubic) {
 
 test('arrays are decoded as they were encoded, by planes, differences and steps', async () => {
   const random = randomNumbers(1);
-  for (const [Type, low, high] of [[Uint8Array, 0, 256], [Int16Array, -32768, 32768], [Uint32Array, 0, 2 ** 32]]) {
+  for (const [Type, low, high] of [
+    [Uint8Array, 0, 256],
+    [Int16Array, -32768, 32768],
+    [Uint32Array, 0, 2 ** 32]
+  ]) {
     const values = Type.from({ length: 301 }, () => Math.floor(low + random() * (high - low)));
     for (const options of [{}, { planes: true }, { delta: 3 }, { planes: true, delta: 4 }]) {
       const decoded = await decodeArray(JSON.parse(JSON.stringify(encodeArray(values, options))));
@@ -75,6 +80,13 @@ test('arrays are decoded as they were encoded, by planes, differences and steps'
   await assert.rejects(decodeArray({ ...encodeArray(floats), type: 'uint64' }), /unknown type "uint64"/);
 });
 
+test('JSON is read plain and packed', async () => {
+  const value = [[{ name: 'periosteal', points: [1, 2] }], []];
+  const packed = { gzip: gzipSync(JSON.stringify(value)).toString('base64') };
+  assert.deepEqual(await decodeJson(value), value);
+  assert.deepEqual(await decodeJson(packed), value);
+});
+
 test('Bernstein polynomials sum to one and their coefficients are in the order of the exponents', () => {
   const random = randomNumbers(2);
   for (let degree = 0; degree <= 8; ++degree) {
@@ -85,7 +97,18 @@ test('Bernstein polynomials sum to one and their coefficients are in the order o
   assert.equal(evaluate([5, 6, 7, 8], 0, 1, 0, 1, 0, 0), 6);
   // 2000, 1100, 1010, 1001, 0200, 0110, 0101, 0020, 0011, 0002 after two numbers of another cell.
   const b = [0.4, 0.3, 0.2, 0.1];
-  const pairs = [[0, 0], [0, 1], [0, 2], [0, 3], [1, 1], [1, 2], [1, 3], [2, 2], [2, 3], [3, 3]];
+  const pairs = [
+    [0, 0],
+    [0, 1],
+    [0, 2],
+    [0, 3],
+    [1, 1],
+    [1, 2],
+    [1, 3],
+    [2, 2],
+    [2, 3],
+    [3, 3]
+  ];
   pairs.forEach(([i, j], index) => {
     const unit = new Float64Array(12);
     unit[2 + index] = 1;
@@ -100,10 +123,15 @@ test('a mesh of mixed degrees has in each cell the density of its region', () =>
   for (let cell = 0; cell < mesh.cellCount; cell += 7) {
     const b = [random(), random(), random(), random()];
     const sum = b.reduce((total, value) => total + value);
-    const x = [0, 1, 2].map((i) => b.reduce(
-      (total, weight, v) => total + (weight / sum) * mesh.points[3 * mesh.tetrahedra[4 * cell + v] + i], 0));
-    near(mesh.density(cell, ...b.map((value) => value / sum)), densityOfRegion[mesh.regions[cell]](...x), 1e-9,
-      `cell ${cell}`);
+    const x = [0, 1, 2].map((i) =>
+      b.reduce((total, weight, v) => total + (weight / sum) * mesh.points[3 * mesh.tetrahedra[4 * cell + v] + i], 0)
+    );
+    near(
+      mesh.density(cell, ...b.map((value) => value / sum)),
+      densityOfRegion[mesh.regions[cell]](...x),
+      1e-9,
+      `cell ${cell}`
+    );
   }
 });
 
@@ -145,12 +173,20 @@ test("a region's surface is closed, points outward and has the cells' densities"
         const vector = areaVector(surface.points, triangle);
         const corner = point(surface.points, triangle[0]);
         volume += (vector[0] * corner[0] + vector[1] * corner[1] + vector[2] * corner[2]) / 3;
-        vector.forEach((value, i) => { sum[i] += value; });
+        vector.forEach((value, i) => {
+          sum[i] += value;
+        });
       }
       near(Math.hypot(...sum), 0, 1e-3, 'sum of the area vectors');
       near(volume, volumeOf(mesh, region), 1e-4 * volume, `volume of region ${region}`);
-      surface.densities.forEach((density, v) => near(density, densityOfRegion[region](...point(surface.points, v)), 2e-3,
-        `density at vertex ${v} of region ${region}`));
+      surface.densities.forEach((density, v) =>
+        near(
+          density,
+          densityOfRegion[region](...point(surface.points, v)),
+          2e-3,
+          `density at vertex ${v} of region ${region}`
+        )
+      );
     }
   }
   assert.equal(regionFaces(mesh, 4).length, 0);
@@ -162,15 +198,20 @@ function volumeOf(mesh, region) {
     if (mesh.regions[cell] === region) {
       const [a, b, c, d] = [0, 1, 2, 3].map((v) => point(mesh.points, mesh.tetrahedra[4 * cell + v]));
       const [u, v, w] = [b, c, d].map((corner) => corner.map((value, i) => value - a[i]));
-      volume += (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-                 u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+      volume +=
+        (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) /
+        6;
     }
   }
   return volume;
 }
 
 test("a surface's normals are unit vectors along the faces", () => {
-  const surface = regionSurface(boxMesh([2, 2, 2], 0, () => 1), 1, 2);
+  const surface = regionSurface(
+    boxMesh([2, 2, 2], 0, () => 1),
+    1,
+    2
+  );
   for (const triangle of trianglesOf(surface)) {
     const vector = areaVector(surface.points, triangle);
     for (const v of triangle) {
@@ -205,7 +246,12 @@ test("a cut's triangles face its normal and its regions add up", () => {
   }
   const parts = [1, 2, 3].map((region) => planeCut(mesh, normal, 1.7, (other) => other === region, 2));
   parts.forEach((part, i) => assert.deepEqual([...new Set(part.regions)], [i + 1]));
-  near(parts.reduce((sum, part) => sum + areaOf(part), 0), areaOf(whole), 1e-9, 'sum of the regions');
+  near(
+    parts.reduce((sum, part) => sum + areaOf(part), 0),
+    areaOf(whole),
+    1e-9,
+    'sum of the regions'
+  );
 });
 
 test('a cut has the exact density of a cubic field at each resolution', () => {
@@ -229,7 +275,11 @@ test("a cut's outlines are its polygons' edges", () => {
   assert.equal(outlines.length, 18);
   let length = 0;
   for (let i = 0; i < outlines.length; i += 6) {
-    length += Math.hypot(outlines[i] - outlines[i + 3], outlines[i + 1] - outlines[i + 4], outlines[i + 2] - outlines[i + 5]);
+    length += Math.hypot(
+      outlines[i] - outlines[i + 3],
+      outlines[i + 1] - outlines[i + 4],
+      outlines[i + 2] - outlines[i + 5]
+    );
   }
   near(length, 0.75 * (2 + Math.SQRT2), 1e-6, 'length');
   outlines.forEach((value, i) => i % 3 === 2 && near(value, 0.25, 1e-6, 'height'));
@@ -239,20 +289,30 @@ test('Gauss-Legendre rules are exact up to their degree', () => {
   for (let n = 1; n <= 5; ++n) {
     const { points, weights } = gaussLegendre(n);
     for (let power = 0; power < 2 * n; ++power) {
-      near(points.reduce((sum, x, i) => sum + weights[i] * x ** power, 0), 1 / (power + 1), 1e-14, `${n} points, x^${power}`);
+      near(
+        points.reduce((sum, x, i) => sum + weights[i] * x ** power, 0),
+        1 / (power + 1),
+        1e-14,
+        `${n} points, x^${power}`
+      );
     }
   }
 });
 
 const view = {
-  source: [3, -500, 7], detectorOrigin: [-19, 120, 29], detectorU: [1, 0, 0], detectorV: [0, 0, -1], size: [20, 31],
+  source: [3, -500, 7],
+  detectorOrigin: [-19, 120, 29],
+  detectorU: [1, 0, 0],
+  detectorV: [0, 0, -1],
+  size: [20, 31],
   spacing: [2, 2]
 };
 
 /** The exact integral of a cubic field along a view's ray through the box, by its entry and exit. */
 function boxIntegral(field, { source, detectorOrigin, detectorU, detectorV, spacing }, column, row) {
-  const ray = [0, 1, 2].map((i) => detectorOrigin[i] + column * spacing[0] * detectorU[i] +
-                                    row * spacing[1] * detectorV[i] - source[i]);
+  const ray = [0, 1, 2].map(
+    (i) => detectorOrigin[i] + column * spacing[0] * detectorU[i] + row * spacing[1] * detectorV[i] - source[i]
+  );
   let [entry, exit] = [0, 1];
   [10, 15, 20].forEach((half, i) => {
     const bounds = [(-half - source[i]) / ray[i], (half - source[i]) / ray[i]];
@@ -271,7 +331,11 @@ function boxIntegral(field, { source, detectorOrigin, detectorU, detectorV, spac
 }
 
 test('the radiograph of a box is the exact integral of its density, constant and cubic', () => {
-  for (const [field, degree, counts] of [[() => 1, 0, [3, 2, 4]], [cubic, 3, [4, 3, 5]], [cubic, 4, [2, 2, 2]]]) {
+  for (const [field, degree, counts] of [
+    [() => 1, 0, [3, 2, 4]],
+    [cubic, 3, [4, 3, 5]],
+    [cubic, 4, [2, 2, 2]]
+  ]) {
     const image = radiograph(boxMesh(counts, degree, field), view);
     let hit = 0;
     image.forEach((value, i) => {
@@ -286,7 +350,12 @@ test('the radiograph of a box is the exact integral of its density, constant and
 test('a ray in the plane of faces counts each cell once', () => {
   const aligned = { ...view, source: [0, -500, 0], detectorOrigin: [-20, 100, 20], size: [21, 21] };
   const image = radiograph(boxMesh([2, 2, 2], 3), aligned);
-  for (const [column, row] of [[10, 10], [10, 5], [6, 10], [7, 13]]) {
+  for (const [column, row] of [
+    [10, 10],
+    [10, 5],
+    [6, 10],
+    [7, 13]
+  ]) {
     near(image[row * 21 + column], boxIntegral(cubic, aligned, column, row), 0.1, `column ${column}, row ${row}`);
   }
 });
@@ -299,7 +368,19 @@ test('a coarser view has pixels in the middle of those it stands for', () => {
 });
 
 test('modes add up', () => {
-  assert.deepEqual([...combine([1, 2], [[10, 20], [100, 200]], [0.5, -1])], [-94, -188]);
+  assert.deepEqual(
+    [
+      ...combine(
+        [1, 2],
+        [
+          [10, 20],
+          [100, 200]
+        ],
+        [0.5, -1]
+      )
+    ],
+    [-94, -188]
+  );
 });
 
 test('colours stand for the range and do not leave it', () => {
@@ -316,7 +397,12 @@ test('numbers are round and legible', () => {
   assert.equal(formatNumber(-0.04, 1), '0.0');
   assert.deepEqual([0.7, 1, 19.9, 20, 50, 99].map(roundStep), [0.5, 1, 10, 20, 50, 50]);
   assert.deepEqual(ticks([-200, 1600], 5), { values: [0, 500, 1000, 1500], decimals: 0 });
-  for (const range of [[0, 1], [-37, 12], [0.001, 0.0032], [5, 60000]]) {
+  for (const range of [
+    [0, 1],
+    [-37, 12],
+    [0.001, 0.0032],
+    [5, 60000]
+  ]) {
     const { values } = ticks(range, 5);
     assert.ok(values.length >= 3 && values.length <= 9, `${values.length} ticks in ${range}`);
     assert.ok(values.every((value) => value >= range[0] - 1e-9 && value <= range[1] + 1e-9));

@@ -17,15 +17,26 @@ function packagesOf(inputs) {
 function licenceOf(name) {
   const folder = join('node_modules', name);
   const { version, license, author } = JSON.parse(readFileSync(join(folder, 'package.json')));
-  const files = readdirSync(folder).filter((file) => /^(licen[cs]e|copyright)/i.test(file)).sort();
+  const files = readdirSync(folder)
+    .filter((file) => /^(licen[cs]e|copyright)/i.test(file))
+    .sort();
   const texts = files.map((file) => readFileSync(join(folder, file), 'utf8').replaceAll('*/', '* /').trim());
   return [`${name} ${version}, ${license}, ${author?.name ?? author ?? ''}`, ...texts].join('\n\n');
 }
 
 const folder = process.argv[2];
 const result = await build({
-  entryPoints: ['src/main.js'], bundle: true, minify: true, format: 'iife', target: 'es2022', legalComments: 'eof',
-  charset: 'ascii', alias: { 'spark-md5': './src/hash.js' }, metafile: true, write: false, outfile: 'bundle.js'
+  entryPoints: ['src/main.js'],
+  bundle: true,
+  minify: true,
+  format: 'iife',
+  target: 'es2022',
+  legalComments: 'eof',
+  charset: 'ascii',
+  alias: { 'spark-md5': './src/hash.js' },
+  metafile: true,
+  write: false,
+  outfile: 'bundle.js'
 });
 const licences = packagesOf(result.metafile.outputs['bundle.js'].inputs).map(licenceOf);
 const script = `${result.outputFiles[0].text}\n/*! This script holds:\n\n${licences.join('\n\n----\n\n')}\n*/\n`;

@@ -21,7 +21,11 @@
     script.textContent = await new Response(inflated).text();
     document.head.append(script);
   } catch (error) {
-    explain('The interactive views need Chrome 80, Edge 80, Safari 16.4, Firefox 113 or a later version. The tables and ' +
-            'pictures are complete. (' + error.message + ')');
+    explain(
+      'The interactive views need Chrome 80, Edge 80, Safari 16.4, Firefox 113 or a later version. The tables and ' +
+        'pictures are complete. (' +
+        error.message +
+        ')'
+    );
   }
 })();

@@ -2,7 +2,12 @@
 // differences, as byte planes, and as steps from an offset.
 
 const types = {
-  uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, int16: Int16Array, uint32: Uint32Array, int32: Int32Array,
+  uint8: Uint8Array,
+  int8: Int8Array,
+  uint16: Uint16Array,
+  int16: Int16Array,
+  uint32: Uint32Array,
+  int32: Int32Array,
   float32: Float32Array
 };
 
@@ -66,4 +71,22 @@ export async function decodeArray(array) {
 /** A value that may be stored as base64 of the gzip of its JSON. */
 export async function decodeJson(value) {
   return value.gzip ? JSON.parse(new TextDecoder().decode(await inflate(bytesOfBase64(value.gzip)))) : value;
+}
+
+/**
+ * Grey values, slice after slice, of a JPEG that holds the slices as tiles, `across` of them in a row. `count`,
+ * `columns` and `rows`: of the slices.
+ */
+export async function decodeJpeg({ jpeg, across, tile, step, offset }, { count, columns, rows }) {
+  const bitmap = await createImageBitmap(new Blob([bytesOfBase64(jpeg)], { type: 'image/jpeg' }));
+  const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d', { willReadFrequently: true });
+  context.drawImage(bitmap, 0, 0);
+  const values = new Float32Array(count * rows * columns);
+  for (let k = 0; k < count; ++k) {
+    const { data } = context.getImageData((k % across) * tile[0], Math.floor(k / across) * tile[1], columns, rows);
+    for (let i = 0; i < rows * columns; ++i) {
+      values[k * rows * columns + i] = offset + step * data[4 * i];
+    }
+  }
+  return values;
 }

@@ -14,8 +14,11 @@ const reducedMotion = matchMedia('(prefers-reduced-motion: reduce)');
 export class Atlas {
   static async create(container, data, prefix) {
     const decode = (modes, name) => Promise.all((modes ?? []).map((mode) => decodeArray(mode[name])));
-    const [mean, shape, density] = await Promise.all(
-      [Mesh.decode(data.mean), decode(data.shape, 'displacements'), decode(data.density, 'coefficients')]);
+    const [mean, shape, density] = await Promise.all([
+      Mesh.decode(data.mean),
+      decode(data.shape, 'displacements'),
+      decode(data.density, 'coefficients')
+    ]);
     return new Atlas(container, data, prefix, { mean, shape, density });
   }
 
@@ -24,14 +27,18 @@ export class Atlas {
     this.mean = mean;
     this.modes = [
       ...shape.map((change, i) => ({ kind: 'shape', number: i + 1, share: data.shape[i].share, change, weight: 0 })),
-      ...density.map((change, i) => ({ kind: 'density', number: i + 1, share: data.density[i].share, change, weight: 0 }))
+      ...density.map((change, i) => ({
+        kind: 'density',
+        number: i + 1,
+        share: data.density[i].share,
+        change,
+        weight: 0
+      }))
     ];
-    const place = element('div');
-    container.append(place);
-    this.viewer = new Viewer(place, data, prefix);
+    this.viewer = new Viewer(container, data, prefix);
     this.viewer.controls.prepend(this.modesGroup());
     if (data.view && mean.hasDensity) {
-      this.addRadiograph(container);
+      this.addRadiograph();
     }
     this.viewer.setMesh(mean);
     this.update();
@@ -49,9 +56,15 @@ export class Atlas {
       });
       return mode.slider.row;
     });
-    this.animateControl = button('Animate', () => (this.animation ? this.stop() : this.animate()), { id: 'atlas-animate' });
-    const buttons = element('div', { className: 'buttons buttons-two' }, this.animateControl,
-      button('Reset', () => this.reset(), { id: 'atlas-reset' }));
+    this.animateControl = button('Animate', () => (this.animation ? this.stop() : this.animate()), {
+      id: 'atlas-animate'
+    });
+    const buttons = element(
+      'div',
+      { className: 'buttons buttons-two' },
+      this.animateControl,
+      button('Reset', () => this.reset(), { id: 'atlas-reset' })
+    );
     return group('Modes', ...rows, buttons);
   }
 
@@ -90,7 +103,12 @@ export class Atlas {
 
   update() {
     const of = (kind) => this.modes.filter((mode) => mode.kind === kind);
-    const sum = (values, modes) => combine(values, modes.map(({ change }) => change), modes.map(({ weight }) => weight));
+    const sum = (values, modes) =>
+      combine(
+        values,
+        modes.map(({ change }) => change),
+        modes.map(({ weight }) => weight)
+      );
     this.mesh = this.mean.with({
       points: sum(this.mean.points, of('shape')),
       coefficients: this.mean.hasDensity ? sum(this.mean.coefficients, of('density')) : null
@@ -99,16 +117,36 @@ export class Atlas {
     this.drawRadiographSoon();
   }
 
-  addRadiograph(container) {
+  addRadiograph() {
     const [columns, rows] = this.data.view.size;
-    this.canvas = element('canvas', { role: 'img', 'aria-label': "Radiograph of the model as the modes' sliders stand" });
+    this.canvas = element('canvas', {
+      role: 'img',
+      'aria-label': "Radiograph of the model as the modes' sliders stand"
+    });
     this.scaleBar = new ScaleBar();
     this.barPlace = element('div');
-    this.frame = pictureFrame(columns * this.data.view.spacing[0], rows * this.data.view.spacing[1], '60vh', this.canvas,
-      ...directionLetters(this.data.letters), this.scaleBar.node);
-    container.append(element('figure', { className: 'radiograph' }, this.frame, this.barPlace,
-      element('figcaption', {}, 'Radiograph of the model above: line integrals of its density, computed in this page. ' +
-        'The scale bar holds in the plane of the detector.')));
+    this.frame = pictureFrame(
+      columns * this.data.view.spacing[0],
+      rows * this.data.view.spacing[1],
+      '60vh',
+      this.canvas,
+      ...directionLetters(this.data.letters),
+      this.scaleBar.node
+    );
+    this.viewer.column.append(
+      element(
+        'figure',
+        { className: 'radiograph' },
+        this.frame,
+        this.barPlace,
+        element(
+          'figcaption',
+          {},
+          'Radiograph of the model above: line integrals of its density, computed in this page. ' +
+            'The scale bar holds in the plane of the detector.'
+        )
+      )
+    );
     new ResizeObserver(() => this.scaleRadiograph()).observe(this.frame);
   }
 
@@ -149,6 +187,7 @@ export class Atlas {
     context.putImageData(image, 0, 0);
     const unit = this.data.unit ? `${this.data.unit} mm` : 'mm';
     this.barPlace.replaceChildren(
-      colourBar({ quantity: 'Line integral', unit, range }, 'linear-gradient(to right, #000, #fff)'));
+      colourBar({ quantity: 'Line integral', unit, range }, 'linear-gradient(to right, #000, #fff)')
+    );
   }
 }

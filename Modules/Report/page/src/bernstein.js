@@ -1,5 +1,5 @@
-// Bernstein polynomials on tetrahedra. The coefficients of a cell of degree n are ordered by the exponents (i, j, k, l),
-// i + j + k + l = n, of the barycentric coordinates of its vertices 0..3: i descending, then j, then k.
+// Bernstein polynomials on tetrahedra. The coefficients of a cell of degree n are ordered by the exponents (i, j, k,
+// l), i + j + k + l = n, of the barycentric coordinates of its vertices 0..3: i descending, then j, then k.
 
 /** The number of coefficients of a polynomial of this degree. */
 export function coefficientCount(degree) {
@@ -49,8 +49,13 @@ export function evaluate(coefficients, begin, degree, b0, b1, b2, b3) {
   fillPowers(96, degree, b3);
   let sum = 0;
   for (let c = 0; c < weights.length; ++c) {
-    sum += coefficients[begin + c] * weights[c] * powers[exponents[4 * c]] * powers[32 + exponents[4 * c + 1]] *
-           powers[64 + exponents[4 * c + 2]] * powers[96 + exponents[4 * c + 3]];
+    sum +=
+      coefficients[begin + c] *
+      weights[c] *
+      powers[exponents[4 * c]] *
+      powers[32 + exponents[4 * c + 1]] *
+      powers[64 + exponents[4 * c + 2]] *
+      powers[96 + exponents[4 * c + 3]];
   }
   return sum;
 }

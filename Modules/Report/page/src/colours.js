@@ -2,8 +2,16 @@
 
 // The map "viridis" at even distances, as in BoneTK's pictures.
 const stops = [
-  [68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142], [31, 158, 137], [53, 183, 121],
-  [109, 205, 89], [180, 222, 44], [253, 231, 37]
+  [68, 1, 84],
+  [72, 40, 120],
+  [62, 74, 137],
+  [49, 104, 142],
+  [38, 130, 142],
+  [31, 158, 137],
+  [53, 183, 121],
+  [109, 205, 89],
+  [180, 222, 44],
+  [253, 231, 37]
 ];
 
 /** Red, green, blue (0..255) of a share (0..1) of the density's range. */
@@ -39,7 +47,13 @@ export function densityGradient() {
 
 // Okabe and Ito's colours, in an order that suits bone: cortical, trabecular, cavity, further layers.
 const regionTable = [
-  [230, 159, 0], [86, 180, 233], [204, 121, 167], [0, 158, 115], [240, 228, 66], [0, 114, 178], [213, 94, 0]
+  [230, 159, 0],
+  [86, 180, 233],
+  [204, 121, 167],
+  [0, 158, 115],
+  [240, 228, 66],
+  [0, 114, 178],
+  [213, 94, 0]
 ];
 
 /** Red, green, blue (0..255) of a region, numbered from 1. */

@@ -3,8 +3,8 @@ import { dividedTriangle } from './surface.js';
 
 /**
  * The barycentric coordinates of the corners of the polygon in which a plane meets a cell, in order, or an empty list.
- * heights: the vertices' signed distances from the plane; a vertex in the plane counts as above it, so that a face in the
- * plane belongs to one of its two cells.
+ * heights: the vertices' signed distances from the plane; a vertex in the plane counts as above it, so that a face in
+ * the plane belongs to one of its two cells.
  */
 export function cellPolygon(heights) {
   const above = [0, 1, 2, 3].filter((vertex) => heights[vertex] >= 0);
@@ -58,16 +58,21 @@ function isCounterClockwise(corners, normal) {
   const [a, b, c] = corners;
   const u = [0, 1, 2].map((i) => b[i] - a[i]);
   const v = [0, 1, 2].map((i) => c[i] - a[i]);
-  return normal[0] * (u[1] * v[2] - u[2] * v[1]) + normal[1] * (u[2] * v[0] - u[0] * v[2]) +
-         normal[2] * (u[0] * v[1] - u[1] * v[0]) >= 0;
+  return (
+    normal[0] * (u[1] * v[2] - u[2] * v[1]) +
+      normal[1] * (u[2] * v[0] - u[0] * v[2]) +
+      normal[2] * (u[0] * v[1] - u[1] * v[0]) >=
+    0
+  );
 }
 
 /**
  * The cut by the plane normal . x = offset (normal of length 1, offset in mm) through the cells whose region isShown
  * accepts. Each polygon is divided into triangles `resolution` times finer along each edge, and each vertex has its
  * density by the polynomial of the polygon's own cell.
- * Returns points (3 a vertex, mm), densities (1 a vertex; NaN without density), regions (1 a vertex), triangles (3 each,
- * counter-clockwise seen from where the normal points to), outlines (pairs of points, 6 numbers each: the polygons' edges).
+ * Returns points (3 a vertex, mm), densities (1 a vertex; NaN without density), regions (1 a vertex), triangles (3
+ * each, counter-clockwise seen from where the normal points to), outlines (pairs of points, 6 numbers each: the
+ * polygons' edges).
  */
 export function planeCut(mesh, normal, offset, isShown, resolution) {
   const points = [];
@@ -77,13 +82,14 @@ export function planeCut(mesh, normal, offset, isShown, resolution) {
   const outlines = [];
   const divided = dividedTriangle(resolution);
   const { tetrahedra } = mesh;
-  const position = (cell, barycentric) => [0, 1, 2].map((i) => {
-    let sum = 0;
-    for (let vertex = 0; vertex < 4; ++vertex) {
-      sum += barycentric[vertex] * mesh.points[3 * tetrahedra[4 * cell + vertex] + i];
-    }
-    return sum;
-  });
+  const position = (cell, barycentric) =>
+    [0, 1, 2].map((i) => {
+      let sum = 0;
+      for (let vertex = 0; vertex < 4; ++vertex) {
+        sum += barycentric[vertex] * mesh.points[3 * tetrahedra[4 * cell + vertex] + i];
+      }
+      return sum;
+    });
   for (const [cell, heights] of crossedCells(mesh, normal, offset, isShown)) {
     const polygon = cellPolygon(heights);
     let corners = polygon.map((corner) => position(cell, corner));
@@ -110,7 +116,10 @@ export function planeCut(mesh, normal, offset, isShown, resolution) {
     }
   }
   return {
-    points: Float64Array.from(points), densities: Float64Array.from(densities), regions: Uint8Array.from(regions),
-    triangles: Uint32Array.from(triangles), outlines: Float32Array.from(outlines)
+    points: Float64Array.from(points),
+    densities: Float64Array.from(densities),
+    regions: Uint8Array.from(regions),
+    triangles: Uint32Array.from(triangles),
+    outlines: Float32Array.from(outlines)
   };
 }

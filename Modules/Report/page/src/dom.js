@@ -35,8 +35,8 @@ export function checkbox(id, label, checked, onChange) {
 }
 
 /**
- * A slider with its label and its value as text, which say(value) gives. live: whether screen readers also hear the text
- * when something else than the slider changes it. onInput hears of its user's moves alone.
+ * A slider with its label and its value as text, which say(value) gives. live: whether screen readers also hear the
+ * text when something else than the slider changes it. onInput hears of its user's moves alone.
  */
 export function slider(id, label, { min, max, step, value, say, live = false }, onInput) {
   const control = element('input', { type: 'range', id, min, max, step });

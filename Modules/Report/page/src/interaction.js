@@ -37,12 +37,16 @@ export function bindInteraction(scene, { onTurn, onFit }) {
   for (const type of ['pointerup', 'pointercancel']) {
     canvas.addEventListener(type, (event) => pointers.delete(event.pointerId));
   }
-  canvas.addEventListener('wheel', (event) => {
-    if (document.activeElement === canvas || event.ctrlKey) {
-      event.preventDefault();
-      scene.zoom(1.0015 ** -event.deltaY);
-    }
-  }, { passive: false });
+  canvas.addEventListener(
+    'wheel',
+    (event) => {
+      if (document.activeElement === canvas || event.ctrlKey) {
+        event.preventDefault();
+        scene.zoom(1.0015 ** -event.deltaY);
+      }
+    },
+    { passive: false }
+  );
   canvas.addEventListener('keydown', (event) => {
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const arrow = arrows[event.key];

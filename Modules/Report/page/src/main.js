@@ -29,7 +29,10 @@ async function showModel(container, model) {
     page.level = index;
     viewer.setMesh(meshes[index]);
   };
-  viewer.addLevels(model.levels.map(({ name }) => name), setLevel);
+  viewer.addLevels(
+    model.levels.map(({ name }) => name),
+    setLevel
+  );
   await setLevel(0);
   await viewer.addExtras(model.contours, model.landmarks);
   page.viewer = viewer;
@@ -57,9 +60,11 @@ async function start() {
     parts.push(attempt(place('viewer'), () => showModel(place('viewer'), data.model)));
   }
   if (data.slices && place('slices')) {
-    parts.push(attempt(place('slices'), async () => {
-      page.slices = await Slices.create(place('slices'), data.slices);
-    }));
+    parts.push(
+      attempt(place('slices'), async () => {
+        page.slices = await Slices.create(place('slices'), data.slices);
+      })
+    );
   }
   await Promise.all(parts);
   if (data.atlas && place('atlas')) {
@@ -68,10 +73,12 @@ async function start() {
       page.viewer ??= page.atlas.viewer;
     });
   }
-  requestAnimationFrame(() => requestAnimationFrame(() => {
-    page.frameTime = performance.now();
-    document.title = `BoneTK report: ${data.name} \u2013 rendered`;
-  }));
+  requestAnimationFrame(() =>
+    requestAnimationFrame(() => {
+      page.frameTime = performance.now();
+      document.title = `BoneTK report: ${data.name} \u2013 rendered`;
+    })
+  );
 }
 
 start();

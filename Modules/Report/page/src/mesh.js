@@ -12,7 +12,12 @@ function coefficientBegins(degrees) {
 }
 
 /** The vertices of the face opposite each vertex, counter-clockwise seen from outside a positive cell. */
-export const facesOfCell = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+export const facesOfCell = [
+  [1, 2, 3],
+  [0, 3, 2],
+  [0, 1, 3],
+  [0, 2, 1]
+];
 
 /** For each cell its four neighbours across the faces opposite its vertices, or -1. */
 function neighborsOf(tetrahedra, pointCount) {
@@ -57,7 +62,8 @@ function neighborsOf(tetrahedra, pointCount) {
 
 /**
  * A tetrahedral mesh with a polynomial density in each cell.
- * points: 3 a point, LPS mm; tetrahedra: 4 a cell; regions: 1 a cell; coefficients and degrees may be null (no density).
+ * points: 3 a point, LPS mm; tetrahedra: 4 a cell; regions: 1 a cell; coefficients and degrees may be null (no
+ * density).
  */
 export class Mesh {
   constructor({ points, tetrahedra, regions, degrees = null, coefficients = null }) {

@@ -62,14 +62,18 @@ function pixelsOfCell(corners, view, axis, distance) {
     bounds[2] = Math.min(bounds[2], row);
     bounds[3] = Math.max(bounds[3], row);
   }
-  return [Math.max(0, Math.ceil(bounds[0])), Math.min(view.size[0] - 1, Math.floor(bounds[1])),
-          Math.max(0, Math.ceil(bounds[2])), Math.min(view.size[1] - 1, Math.floor(bounds[3]))];
+  return [
+    Math.max(0, Math.ceil(bounds[0])),
+    Math.min(view.size[0] - 1, Math.floor(bounds[1])),
+    Math.max(0, Math.ceil(bounds[2])),
+    Math.min(view.size[1] - 1, Math.floor(bounds[3]))
+  ];
 }
 
 /**
- * Where a ray is within a cell: the range of t in which no values[i] + t rates[i] is negative, as [entry, exit], at most
- * [0, 1]. A ray in a face's plane belongs to one of the face's two cells: that into which a small shift leads, the same
- * for all cells.
+ * Where a ray is within a cell: the range of t in which no values[i] + t rates[i] is negative, as [entry, exit], at
+ * most [0, 1]. A ray in a face's plane belongs to one of the face's two cells: that into which a small shift leads, the
+ * same for all cells.
  */
 function rangeInCell(values, rates, slopes, range) {
   range[0] = 0;
@@ -115,8 +119,17 @@ function addCell(mesh, cell, view, axis, distance, image) {
         let sum = 0;
         for (let q = 0; q < points.length; ++q) {
           const t = entry + points[q] * (exit - entry);
-          sum += weights[q] * evaluate(mesh.coefficients, begin, degree, values[0] + t * rates[0],
-            values[1] + t * rates[1], values[2] + t * rates[2], values[3] + t * rates[3]);
+          sum +=
+            weights[q] *
+            evaluate(
+              mesh.coefficients,
+              begin,
+              degree,
+              values[0] + t * rates[0],
+              values[1] + t * rates[1],
+              values[2] + t * rates[2],
+              values[3] + t * rates[3]
+            );
         }
         image[row * view.size[0] + column] += sum * (exit - entry) * Math.sqrt(dot(ray, ray));
       }
@@ -150,7 +163,10 @@ export function coarserView(view, factor) {
     ...view,
     size: view.size.map((n) => Math.max(1, Math.floor(n / factor))),
     spacing: view.spacing.map((mm) => mm * factor),
-    detectorOrigin: add(add(view.detectorOrigin, view.detectorU, shift * view.spacing[0]), view.detectorV,
-      shift * view.spacing[1])
+    detectorOrigin: add(
+      add(view.detectorOrigin, view.detectorU, shift * view.spacing[0]),
+      view.detectorV,
+      shift * view.spacing[1]
+    )
   };
 }

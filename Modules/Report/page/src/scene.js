@@ -40,7 +40,9 @@ function trianglesData({ points, normals, triangles }, colours) {
   data.getPolys().setData(cellArray(triangles, 3));
   data.getPointData().setScalars(vtkDataArray.newInstance({ name: 'Colour', values: colours, numberOfComponents: 3 }));
   if (normals) {
-    data.getPointData().setNormals(vtkDataArray.newInstance({ name: 'Normals', values: normals, numberOfComponents: 3 }));
+    data
+      .getPointData()
+      .setNormals(vtkDataArray.newInstance({ name: 'Normals', values: normals, numberOfComponents: 3 }));
   }
   return data;
 }
@@ -53,11 +55,14 @@ function linesData(points, lines) {
   return data;
 }
 
-// A pixel at a triangle's rim takes its distance from the clipping plane within the triangle: else steep triangles leave
-// specks beyond the plane.
+// A pixel at a triangle's rim takes its distance from the clipping plane within the triangle: else steep triangles
+// leave specks beyond the plane.
 const centroidDistances = ['Vertex', 'Fragment'].map((shaderType) => ({
-  shaderType, originalValue: 'varying float clipDistances', replacementValue: 'centroid varying float clipDistances',
-  replaceFirst: false, replaceAll: false
+  shaderType,
+  originalValue: 'varying float clipDistances',
+  replacementValue: 'centroid varying float clipDistances',
+  replaceFirst: false,
+  replaceAll: false
 }));
 
 function newActor(properties) {
@@ -81,8 +86,14 @@ function newLinesActor(colour) {
 function newCube() {
   const cube = vtkAnnotatedCubeActor.newInstance();
   cube.setDefaultStyle({
-    fontStyle: 'bold', fontFamily: 'system-ui, sans-serif', fontColor: '#20262d', faceColor: '#e8ebee', edgeThickness: 0.04,
-    edgeColor: '#8a939c', resolution: 256, fontSizeScale: (resolution) => resolution / 1.7
+    fontStyle: 'bold',
+    fontFamily: 'system-ui, sans-serif',
+    fontColor: '#20262d',
+    faceColor: '#e8ebee',
+    edgeThickness: 0.04,
+    edgeColor: '#8a939c',
+    resolution: 256,
+    fontSizeScale: (resolution) => resolution / 1.7
   });
   cube.setXPlusFaceProperty({ text: 'L', faceRotation: 90 });
   cube.setXMinusFaceProperty({ text: 'R', faceRotation: -90 });
@@ -163,9 +174,10 @@ export class Scene {
     this.onFrame();
   }
 
+  /** Draws at once, for print. */
   setBackground(colour) {
     this.renderer.setBackground(...colour);
-    this.render();
+    this.renderNow();
   }
 
   /** The unit vector from the model to the camera. */
@@ -192,8 +204,11 @@ export class Scene {
     const half = [0, 2, 4].map((i) => (bounds[i + 1] - bounds[i]) / 2);
     const direction = this.direction();
     const up = this.camera.getViewUp();
-    const right = [up[1] * direction[2] - up[2] * direction[1], up[2] * direction[0] - up[0] * direction[2],
-                   up[0] * direction[1] - up[1] * direction[0]];
+    const right = [
+      up[1] * direction[2] - up[2] * direction[1],
+      up[2] * direction[0] - up[0] * direction[2],
+      up[0] * direction[1] - up[1] * direction[0]
+    ];
     const reach = (axis) => axis.reduce((sum, component, i) => sum + Math.abs(component) * half[i], 0);
     const [width, height] = this.view.getSize();
     this.distance = 4 * Math.hypot(...half);
@@ -214,8 +229,11 @@ export class Scene {
     const mm = this.millimetresPerPixel();
     const direction = this.direction();
     const up = this.camera.getViewUp();
-    const across = [up[1] * direction[2] - up[2] * direction[1], up[2] * direction[0] - up[0] * direction[2],
-                    up[0] * direction[1] - up[1] * direction[0]];
+    const across = [
+      up[1] * direction[2] - up[2] * direction[1],
+      up[2] * direction[0] - up[0] * direction[2],
+      up[0] * direction[1] - up[1] * direction[0]
+    ];
     const shift = [0, 1, 2].map((i) => mm * (down * up[i] - right * across[i]));
     this.camera.setFocalPoint(...this.camera.getFocalPoint().map((component, i) => component + shift[i]));
     this.camera.setPosition(...this.camera.getPosition().map((component, i) => component + shift[i]));
@@ -237,10 +255,10 @@ export class Scene {
   project(point) {
     const [width, height] = this.view.getSize();
     const matrix = this.camera.getCompositeProjectionMatrix(width / height, -1, 1);
-    const row = (i) => matrix[4 * i] * point[0] + matrix[4 * i + 1] * point[1] + matrix[4 * i + 2] * point[2] +
-                       matrix[4 * i + 3];
+    const row = (i) =>
+      matrix[4 * i] * point[0] + matrix[4 * i + 1] * point[1] + matrix[4 * i + 2] * point[2] + matrix[4 * i + 3];
     const size = this.container.getBoundingClientRect();
-    return [(0.5 + 0.5 * row(0) / row(3)) * size.width, (0.5 - 0.5 * row(1) / row(3)) * size.height];
+    return [(0.5 + (0.5 * row(0)) / row(3)) * size.width, (0.5 - (0.5 * row(1)) / row(3)) * size.height];
   }
 
   /** Shows a region's surface, as surface.js makes it, by a colour at each vertex. */
@@ -278,7 +296,10 @@ export class Scene {
       this.cut.mapper.setColorModeToDirectScalars();
       this.cut.mapper.setInputData(trianglesData(cut, colours));
       const points = cut.outlines;
-      const lines = cellArray(Uint32Array.from({ length: points.length / 3 }, (_, i) => i), 2);
+      const lines = cellArray(
+        Uint32Array.from({ length: points.length / 3 }, (_, i) => i),
+        2
+      );
       this.cutEdges.mapper.setInputData(linesData(points, lines));
       this.turnClip(origin, normal);
     }

@@ -1,12 +1,13 @@
 // The CT's slices with their contours.
-import { decodeArray, decodeJson } from './arrays.js';
+import { decodeArray, decodeJpeg, decodeJson } from './arrays.js';
 import { checkbox, element, group, oncePerFrame, slider } from './dom.js';
-import { colourBar, ScaleBar } from './overlay.js';
+import { colourBar, legend, ScaleBar } from './overlay.js';
 
 /** The letters of the patient's directions at a picture's four sides. */
 export function directionLetters(letters) {
-  return ['left', 'right', 'top', 'bottom'].map(
-    (side) => element('span', { className: `letter letter-${side}` }, letters[side] ?? ''));
+  return ['left', 'right', 'top', 'bottom'].map((side) =>
+    element('span', { className: `letter letter-${side}` }, letters[side] ?? '')
+  );
 }
 
 /** A frame for a picture of columns x rows that is at most `height` high. */
@@ -18,7 +19,8 @@ export function pictureFrame(columns, rows, height, ...children) {
 export class Slices {
   static async create(container, data) {
     const contours = await decodeJson(data.contours);
-    return new Slices(container, { ...data, contours }, await decodeArray(data.values));
+    const values = data.values.jpeg ? await decodeJpeg(data.values, data) : await decodeArray(data.values);
+    return new Slices(container, { ...data, contours }, values);
   }
 
   constructor(container, data, values) {
@@ -28,15 +30,28 @@ export class Slices {
     [this.low, this.high] = data.window;
     this.hasContours = true;
     this.pixels = element('canvas', { width: data.columns, height: data.rows });
-    this.canvas = element('canvas', { tabIndex: 0, role: 'img', 'aria-label': 'CT slice; arrow keys go to the next one' });
+    this.canvas = element('canvas', {
+      tabIndex: 0,
+      role: 'img',
+      'aria-label': 'CT slice; arrow keys go to the next one'
+    });
     this.scaleBar = new ScaleBar();
     this.title = element('div', { className: 'picture-title', 'aria-live': 'polite' });
     this.barPlace = element('div');
-    this.frame = pictureFrame(data.columns, data.rows, '72vh', this.canvas, ...directionLetters(data.letters),
-      this.scaleBar.node);
+    const names = new Map(data.contours.flat().map(({ name, color }) => [name, color]));
+    this.frame = pictureFrame(
+      data.columns,
+      data.rows,
+      '72vh',
+      this.canvas,
+      ...directionLetters(data.letters),
+      this.scaleBar.node
+    );
     container.className = 'viewer';
-    container.append(element('div', { className: 'viewer-picture' }, this.title, this.frame, this.barPlace),
-      element('div', { className: 'controls' }, this.sliceGroup(), this.windowGroup(), this.contourGroup()));
+    container.append(
+      element('div', { className: 'viewer-picture' }, this.title, this.frame, legend([...names]), this.barPlace),
+      element('div', { className: 'controls' }, this.sliceGroup(), this.windowGroup(), this.contourGroup())
+    );
     this.draw = oncePerFrame(() => this.drawNow());
     this.canvas.addEventListener('keydown', (event) => this.step(event));
     new ResizeObserver(() => this.draw()).observe(this.frame);
@@ -45,10 +60,13 @@ export class Slices {
   }
 
   sliceGroup() {
-    this.slider = slider('slice', 'Slice',
+    this.slider = slider(
+      'slice',
+      'Slice',
       { min: 0, max: this.data.count - 1, step: 1, value: this.index, say: (i) => `${i + 1} of ${this.data.count}` },
-      (index) => this.show(index));
-    return group('Slice', this.slider.row);
+      (index) => this.show(index)
+    );
+    return group('Position', this.slider.row);
   }
 
   windowGroup() {
@@ -71,18 +89,18 @@ export class Slices {
   numberField(id, label, value) {
     const control = element('input', { type: 'number', id, step: 10, value });
     const text = this.data.unit ? `${label} (${this.data.unit})` : label;
-    return { control, row: element('div', { className: 'field field-inline' }, element('label', { for: id }, text), control) };
+    return {
+      control,
+      row: element('div', { className: 'field field-inline' }, element('label', { for: id }, text), control)
+    };
   }
 
   contourGroup() {
-    const colours = new Map(this.data.contours.flat().map(({ name, color }) => [name, color]));
-    const entries = [...colours].map(([name, color]) =>
-      element('li', {}, element('span', { className: 'line-swatch', style: `background: ${color}` }), name));
     const { row } = checkbox('slice-contours', 'Show contours', true, (isShown) => {
       this.hasContours = isShown;
       this.draw();
     });
-    return group('Contours', row, element('ul', { className: 'legend' }, ...entries));
+    return group('Contours', row);
   }
 
   showBar() {

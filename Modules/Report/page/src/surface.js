@@ -63,7 +63,8 @@ export function dividedTriangle(n) {
 
 /**
  * The surface of a region as triangles: each face is divided `divisions` times, and each vertex has its density by the
- * polynomial of the face's own cell. Returns points and normals (3 a vertex), densities (1 a vertex), triangles (3 each).
+ * polynomial of the face's own cell. Returns points and normals (3 a vertex), densities (1 a vertex), triangles (3
+ * each).
  */
 export function regionSurface(mesh, region, divisions) {
   const faces = regionFaces(mesh, region);

@@ -5,7 +5,7 @@ import { planeCut } from './cut.js';
 import { button, checkbox, element, group, oncePerFrame, select, slider } from './dom.js';
 import { bindInteraction, hint } from './interaction.js';
 import { formatNumber, roundStep } from './numbers.js';
-import { colourBar, ScaleBar } from './overlay.js';
+import { colourBar, legend, ScaleBar } from './overlay.js';
 import { Scene, viewsByName } from './scene.js';
 import { regionSurface } from './surface.js';
 
@@ -15,6 +15,7 @@ const planesByName = {
   sagittal: { normal: [1, 0, 0], axis: 'x' }
 };
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cssColour = (region) => `rgb(${regionColour(region).join(' ')})`;
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
 export class Viewer {
@@ -25,8 +26,12 @@ export class Viewer {
   constructor(container, description, prefix = '') {
     this.description = description;
     this.prefix = prefix;
-    this.regions = Object.entries(description.regions)
-      .map(([number, name]) => ({ number: Number(number), name, isShown: true, opacity: 1 }));
+    this.regions = Object.entries(description.regions).map(([number, name]) => ({
+      number: Number(number),
+      name,
+      isShown: true,
+      opacity: 1
+    }));
     this.plane = { name: 'axial', normal: planesByName.axial.normal, position: 0, isOn: false };
     this.resolution = 4;
     this.isColouredByDensity = true;
@@ -40,12 +45,21 @@ export class Viewer {
     this.stage = element('div', { className: 'stage', id: `${this.prefix}view3d` });
     this.labels = element('div', { className: 'labels' });
     this.scaleBar = new ScaleBar();
-    this.bar = colourBar(this.description);
+    this.keyPlace = element('div', { className: 'key' });
     this.controls = element('div', { className: 'controls' });
     container.className = 'viewer';
-    container.append(
-      element('div', { className: 'viewer-picture' }, this.stage, this.bar, element('p', { className: 'hint' }, hint)),
-      this.controls);
+    this.column = element(
+      'div',
+      {},
+      element(
+        'div',
+        { className: 'viewer-picture' },
+        this.stage,
+        this.keyPlace,
+        element('p', { className: 'hint' }, hint)
+      )
+    );
+    container.append(this.column, this.controls);
     try {
       this.scene = new Scene(this.stage, () => this.drawOverlay());
     } catch (error) {
@@ -58,10 +72,11 @@ export class Viewer {
     canvas.setAttribute('role', 'img');
     canvas.setAttribute('aria-label', 'Model in three dimensions; arrow keys turn it, plus and minus zoom');
     bindInteraction(this.scene, { onTurn: () => this.turned(), onFit: () => this.fit() });
-    const scheme = matchMedia('(prefers-color-scheme: dark)');
-    for (const query of [scheme, matchMedia('print')]) {
-      query.addEventListener('change', () => this.applyTheme());
+    for (const query of ['(prefers-color-scheme: dark)', 'print']) {
+      matchMedia(query).addEventListener('change', () => this.applyTheme());
     }
+    window.addEventListener('beforeprint', () => this.beginPrint());
+    window.addEventListener('afterprint', () => this.printed.remove());
     this.applyTheme();
     this.addControls();
   }
@@ -75,7 +90,8 @@ export class Viewer {
     this.controls.append(
       group('View', element('div', { className: 'buttons' }, ...views)),
       this.regionsGroup(),
-      this.cutGroup());
+      this.cutGroup()
+    );
   }
 
   regionsGroup() {
@@ -91,7 +107,13 @@ export class Viewer {
       this.updateCut();
     });
     const opacity = element('input', {
-      type: 'range', id: this.id(`opacity-${region.number}`), min: 0, max: 100, step: 5, value: 100, title: 'Opacity',
+      type: 'range',
+      id: this.id(`opacity-${region.number}`),
+      min: 0,
+      max: 100,
+      step: 5,
+      value: 100,
+      title: 'Opacity',
       'aria-label': `Opacity of ${region.name}, per cent`
     });
     opacity.addEventListener('input', () => {
@@ -99,7 +121,9 @@ export class Viewer {
       this.showRegions();
     });
     const swatch = element('span', {
-      className: 'swatch', style: `background: rgb(${regionColour(region.number).join(' ')})`, 'aria-hidden': 'true'
+      className: 'swatch',
+      style: `background: ${cssColour(region.number)}`,
+      'aria-hidden': 'true'
     });
     control.after(swatch);
     row.append(opacity);
@@ -107,11 +131,18 @@ export class Viewer {
   }
 
   colourRow() {
-    const { control, row } = select(this.id('colour'), 'Colour by',
-      [['density', this.description.quantity], ['region', 'Region']], (value) => {
+    const { control, row } = select(
+      this.id('colour'),
+      'Colour by',
+      [
+        ['density', this.description.quantity],
+        ['region', 'Region']
+      ],
+      (value) => {
         this.isColouredByDensity = value === 'density';
         this.recolour();
-      });
+      }
+    );
     this.colourControl = control;
     return row;
   }
@@ -119,27 +150,50 @@ export class Viewer {
   cutGroup() {
     const onOff = checkbox(this.id('cut-on'), 'Show a cut', false, (isOn) => this.setCutOn(isOn));
     this.cutOnControl = onOff.control;
-    const orientation = select(this.id('cut-orientation'), 'Orientation',
-      [['axial', 'Axial'], ['coronal', 'Coronal'], ['sagittal', 'Sagittal'], ['free', 'Free (as seen now)']],
-      (name) => this.orientCut(name));
+    const orientation = select(
+      this.id('cut-orientation'),
+      'Orientation',
+      [
+        ['axial', 'Axial'],
+        ['coronal', 'Coronal'],
+        ['sagittal', 'Sagittal'],
+        ['free', 'Free (as seen now)']
+      ],
+      (name) => this.orientCut(name)
+    );
     this.alignControl = button('Cut as seen now', () => this.orientCut('free'), { id: this.id('cut-align') });
     this.alignControl.hidden = true;
-    this.cutSlider = slider(this.id('cut'), 'Position',
-      { min: 0, max: 1, step: 1, value: 0, say: (mm) => this.sayPosition(mm), live: true }, (mm) => {
+    this.cutSlider = slider(
+      this.id('cut'),
+      'Position',
+      { min: 0, max: 1, step: 1, value: 0, say: (mm) => this.sayPosition(mm), live: true },
+      (mm) => {
         this.plane.position = mm;
         this.setCutOn(true);
-      });
-    this.resolutionSlider = slider(this.id('cut-resolution'), 'Resolution',
-      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` }, (n) => {
+      }
+    );
+    this.resolutionSlider = slider(
+      this.id('cut-resolution'),
+      'Resolution',
+      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` },
+      (n) => {
         this.resolution = n;
         this.updateCut();
-      });
+      }
+    );
     const edges = checkbox(this.id('cut-edges'), 'Edges of the cells', false, (isOn) => {
       this.hasCellEdges = isOn;
       this.updateCut();
     });
-    return group('Cut', onOff.row, orientation.row, this.alignControl, this.cutSlider.row, this.resolutionSlider.row,
-      edges.row);
+    return group(
+      'Cut',
+      onOff.row,
+      orientation.row,
+      this.alignControl,
+      this.cutSlider.row,
+      this.resolutionSlider.row,
+      edges.row
+    );
   }
 
   sayPosition(mm) {
@@ -149,8 +203,12 @@ export class Viewer {
 
   /** Lets the user choose among levels; choose(index) is called. */
   addLevels(names, choose) {
-    const { control, row } = select(this.id('level'), 'Level', names.map((name, i) => [String(i), name]),
-      (value) => choose(Number(value)));
+    const { control, row } = select(
+      this.id('level'),
+      'Level',
+      names.map((name, i) => [String(i), name]),
+      (value) => choose(Number(value))
+    );
     this.levelControl = control;
     this.levelText = element('p', { className: 'remark' });
     this.controls.prepend(group('Detail', row, this.levelText));
@@ -160,14 +218,18 @@ export class Viewer {
   async addExtras(contours = [], landmarks = []) {
     const rows = [];
     for (const contour of contours) {
-      const [counts, closed, points] =
-        await Promise.all([contour.counts, contour.closed, contour.points].map(decodeArray));
+      const [counts, closed, points] = await Promise.all(
+        [contour.counts, contour.closed, contour.points].map(decodeArray)
+      );
       const name = `${contour.name} contours`;
       this.scene.addContours(name, parseHexColour(contour.color), points, polylines(counts, closed));
       this.scene.setContoursShown(name, false);
-      const { control, row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false,
-        (isShown) => this.scene.setContoursShown(name, isShown));
-      control.after(element('span', { className: 'swatch', style: `background: ${contour.color}`, 'aria-hidden': 'true' }));
+      const { control, row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false, (isShown) =>
+        this.scene.setContoursShown(name, isShown)
+      );
+      control.after(
+        element('span', { className: 'swatch', style: `background: ${contour.color}`, 'aria-hidden': 'true' })
+      );
       rows.push(row);
     }
     if (landmarks.length > 0) {
@@ -195,7 +257,11 @@ export class Viewer {
   }
 
   bounds() {
-    return [[1, 0, 0], [0, 1, 0], [0, 0, 1]].flatMap((axis) => this.mesh.extent(axis));
+    return [
+      [1, 0, 0],
+      [0, 1, 0],
+      [0, 0, 1]
+    ].flatMap((axis) => this.mesh.extent(axis));
   }
 
   /** Shows a mesh. isMoved: the mesh is the one before with other points or densities. */
@@ -212,13 +278,14 @@ export class Viewer {
       this.setCutRange();
     }
     if (isFirst) {
+      this.showKey();
       this.scene.resize();
       this.lookFrom('anterior');
       this.fit();
     }
     if (this.levelText) {
-      this.levelText.textContent =
-        `${mesh.cellCount.toLocaleString('en')} cells, ${(mesh.points.length / 3).toLocaleString('en')} points`;
+      const [cells, points] = [mesh.cellCount, mesh.points.length / 3].map((count) => count.toLocaleString('en'));
+      this.levelText.textContent = `${cells} cells, ${points} points`;
     }
     this.updateCut();
   }
@@ -239,11 +306,20 @@ export class Viewer {
   }
 
   recolour() {
-    this.bar.classList.toggle('is-unused', !this.isColouredByDensity);
+    this.showKey();
     for (const region of this.regions) {
       this.scene.setSurface(region.number, region.surface, this.coloursOf(region.surface, region.number));
     }
     this.updateCut();
+  }
+
+  /** The colour bar of the density, or the regions' colours. */
+  showKey() {
+    this.keyPlace.replaceChildren(
+      this.isColouredByDensity
+        ? colourBar(this.description)
+        : legend(this.regions.map(({ number, name }) => [name, cssColour(number)]))
+    );
   }
 
   showRegions() {
@@ -303,8 +379,13 @@ export class Viewer {
     this.cut = planeCut(this.mesh, normal, position, (region) => shown.has(region), this.resolution);
     const origin = normal.map((component) => component * position);
     this.clippedSide = dot(normal, this.scene.direction()) >= 0 ? 1 : -1;
-    this.scene.setCut(this.cut, this.coloursOf(this.cut), this.hasCellEdges, origin,
-      normal.map((component) => component * this.clippedSide));
+    this.scene.setCut(
+      this.cut,
+      this.coloursOf(this.cut),
+      this.hasCellEdges,
+      origin,
+      normal.map((component) => component * this.clippedSide)
+    );
   }
 
   /** Clips away the side of the cut that has come to lie in front. */
@@ -325,18 +406,30 @@ export class Viewer {
   }
 
   applyTheme() {
-    const channels = getComputedStyle(this.stage).backgroundColor.match(/[\d.]+/g).map(Number);
+    const channels = getComputedStyle(this.stage)
+      .backgroundColor.match(/[\d.]+/g)
+      .map(Number);
     this.scene.setBackground(channels.slice(0, 3).map((channel) => channel / 255));
   }
 
+  /** Puts a copy of the picture on white in its place: browsers print what WebGL has drawn for the screen. */
+  beginPrint() {
+    this.scene.setBackground([1, 1, 1]);
+    const { canvas } = this.scene;
+    this.printed = element('canvas', { className: 'printed', width: canvas.width, height: canvas.height });
+    this.printed.getContext('2d').drawImage(canvas, 0, 0);
+    canvas.after(this.printed);
+  }
+
   drawOverlay() {
-    const { width } = this.stage.getBoundingClientRect();
+    const { width, height } = this.stage.getBoundingClientRect();
+    this.stage.style.setProperty('--aspect', width / height);
     this.scaleBar.update(this.scene.millimetresPerPixel(), width);
     for (const { position, label } of this.landmarks ?? []) {
       const [x, y] = this.scene.project(position);
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      label.style.left = `${((100 * x) / width).toFixed(3)}%`;
+      label.style.top = `${((100 * y) / height).toFixed(3)}%`;
     }
-    this.onFrame?.();
   }
 }
 
