@@ -99,6 +99,7 @@ AddRegistrationViewOptions(CLI::App * command, RegistrationViewOptions & options
     ->needs(landmarks);
   landmarks->needs("--xray-landmarks");
   AddParameterOptions(command, options.initializer);
+  options.page.AddTo(command);
   command
     ->add_option("--search",
                  options.search,
@@ -229,13 +230,14 @@ PictureNameOf(const std::string & output, std::size_t view)
   return output + "_V" + std::to_string(view + 1) + ".png";
 }
 
-void
+std::vector<Canvas>
 WriteRegistrationPictures(const std::vector<PreparedView> & views,
                           const MeshArrays &                model,
                           const RigidPose &                 pose,
                           const std::string &               output,
                           const Eigen::Matrix3d &           patientAxes)
 {
+  std::vector<Canvas> pictures;
   for (std::size_t v = 0; v < views.size(); ++v)
   {
     const float *  pixels = views[v].integrals->GetBufferPointer();
@@ -244,7 +246,9 @@ WriteRegistrationPictures(const std::vector<PreparedView> & views,
     xray.view = views[v].geometry->GetView();
     xray.values.assign(pixels, pixels + xray.GetNumberOfPixels());
     xray.weights.assign(weights, weights + xray.GetNumberOfPixels());
-    DrawRegistration(xray, model, pose, patientAxes).Write(PictureNameOf(output, v));
+    pictures.push_back(DrawRegistration(xray, model, pose, patientAxes));
+    pictures.back().Write(PictureNameOf(output, v));
   }
+  return pictures;
 }
 } // namespace bone

@@ -4,10 +4,12 @@
 #ifndef boneRegistrationViews_h
 #define boneRegistrationViews_h
 
+#include "boneResultPage.h"
 #include "boneSession.h"
 
 #include "boneRadiographRegistrationBase.h"
 
+#include "boneCanvas.h"
 #include "boneImageIO.h"
 #include "bonePoseInitializer.h"
 #include "boneRadiographPreprocessParameters.h"
@@ -33,6 +35,7 @@ struct RegistrationViewOptions
   std::string                    initial;
   std::string                    landmarks;
   std::vector<std::string>       imageLandmarks;
+  PageOption                     page;
   std::vector<double>            search; ///< empty, or mm along each axis and degrees about each
   CLI::Option *                  valuesOption{ nullptr };
   CLI::Option *                  cropOption{ nullptr };
@@ -73,8 +76,8 @@ ReadInitialTransform(const RegistrationViewOptions &   options,
 std::string
 PictureNameOf(const std::string & output, std::size_t view);
 
-/** A picture of each view with the model in its pose: DrawRegistration. */
-void
+/** Writes a picture of each view with the model in its pose, DrawRegistration, and returns them. */
+std::vector<Canvas>
 WriteRegistrationPictures(const std::vector<PreparedView> & views,
                           const MeshArrays &                model,
                           const RigidPose &                 pose,

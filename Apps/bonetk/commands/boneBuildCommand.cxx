@@ -6,9 +6,10 @@
 #include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 
 #include "boneAtomicFile.h"
-#include "boneBuildEvaluation.h"
+#include "boneBuildPage.h"
 #include "boneBuildPlan.h"
 #include "boneContourIO.h"
 #include "boneGeometryIO.h"
@@ -51,6 +52,7 @@ struct BuildOptions
   BuildParameters    parameters;
   BuildFiles         files;   ///< of the report that the parameters come from
   std::exception_ptr failure; ///< of reading it
+  PageOption         page;
 };
 
 /** What the command line names; without a CT, what the report names that the parameters come from. */
@@ -90,6 +92,22 @@ Complete(BuildOptions options)
 }
 
 void
+WriteBuildPage(const Evaluation &  evaluation,
+               const Evidence &    evidence,
+               const BuildReport & report,
+               BuildPipeline &     pipeline,
+               const std::string & path,
+               const Session &     session)
+{
+  std::vector<ParameterValue> parameters;
+  BuildParameters::Visit(report.parameters, [&parameters](const std::string & stage, const auto & of) {
+    AddParameters(stage, of, parameters);
+  });
+  ReportPage page = MakeBuildPage(report, evaluation, evidence, pipeline);
+  WritePage(page, path, session, std::move(parameters), report.times);
+}
+
+void
 WriteOutputs(const Evaluation &  evaluation,
              const BuildReport & report,
              BuildPipeline &     pipeline,
@@ -109,8 +127,8 @@ WriteOutputs(const Evaluation &  evaluation,
   evaluation.radiographs.Write(in("radiographs.png"));
   WriteFileAtomically(in("report.txt"), ToText(report));
   WriteFileAtomically(in("report.json"), ToJson(report));
-  static const std::regex ofALevel("(model|drr)_L[0-9]+\\.(vtu|mha)");
-  staging.Commit([](const std::string & name) { return std::regex_match(name, ofALevel); });
+  static const std::regex optional("(model|drr)_L[0-9]+\\.(vtu|mha)|report\\.html");
+  staging.Commit([](const std::string & name) { return std::regex_match(name, optional); });
 }
 
 /** Whether an output's name is that of a folder in the output folder, which is to be found out before the work. */
@@ -239,9 +257,10 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
 
   Lap              lap;
+  const Evidence   evidence{ input.ct, input.mask, ct };
   const Evaluation evaluation = [&] {
     const auto stage = session.BeginStage("evaluation");
-    return Evaluate(pipeline, { input.ct, input.mask, ct });
+    return Evaluate(pipeline, evidence);
   }();
   report.times.emplace_back("evaluation", lap());
   pipeline.GetParameters(parameters);
@@ -258,6 +277,10 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.warnings = session.GetWarnings();
   {
     const auto stage = session.BeginStage("writing");
+    if (options.page.IsOn())
+    {
+      WriteBuildPage(evaluation, evidence, report, pipeline, staging.GetPath() + "/report.html", session);
+    }
     WriteOutputs(evaluation, report, pipeline, staging);
   }
   session.Print("\n" + ToText(report) + "\nwritten to " + job.folder + "\n");
@@ -448,6 +471,7 @@ AddBuildCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->parameters.collapse, { "improveAngles" });
   command->get_option("--max-error")->excludes(command->get_option("--continuous"));
   AddStorageOptions(command, options->parameters.storage);
+  options->page.AddTo(command);
   AddAxisOption(command, options->parameters.plan.axis);
   command->callback([options, &action] { action = [options](Session & session) { RunBuild(*options, session); }; });
 }

@@ -5,14 +5,17 @@
 #include "boneMeasureOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 
 #include "boneCurvedBoundary.h"
 #include "boneDensityCalibration.h"
 #include "boneFileName.h"
 #include "boneFiniteElementIO.h"
+#include "boneFiniteElementPage.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
 
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -31,6 +34,7 @@ struct ExportOptions
   std::string             surface;
   FiniteElementParameters parameters;
   std::string             output;
+  PageOption              page;
 };
 
 MeshArrays
@@ -160,7 +164,8 @@ RunExport(const ExportOptions & options, Session & session)
   {
     throw UsageError("--surface needs --order 2: elements of four nodes have straight edges");
   }
-  VerifyOutputs({ { options.output, { FiniteElementExtension(format) } } });
+  VerifyOutputs(
+    { { options.output, { FiniteElementExtension(format) } }, { options.page.NameOf(options.output), {} } });
   if (!HoldsModulusField(format, field))
   {
     throw UsageError("--modulus: a file for " + options.format + " holds moduli by bins, or by " +
@@ -176,6 +181,14 @@ RunExport(const ExportOptions & options, Session & session)
     CurveModel(options, model, session);
   }
   WriteFiniteElements(model, format, options.output);
+  if (options.page.IsOn())
+  {
+    std::vector<ParameterValue> parameters;
+    AddParameters("export", options.parameters, parameters);
+    const std::string name = std::filesystem::path(options.output).filename().string();
+    ReportPage        page = MakeFiniteElementPage(name, model, mesh, landmarks);
+    WritePage(page, options.page.NameOf(options.output), session, std::move(parameters), {});
+  }
 }
 } // namespace
 
@@ -211,6 +224,7 @@ AddExportCommand(CLI::App & app, Action & action)
     "are moved onto");
   AddParameterOptions(command, options->parameters);
   command->add_option("-o,--output", options->output, "File to write");
+  options->page.AddTo(command);
   command->callback([options, &action] { action = [options](Session & session) { RunExport(*options, session); }; });
 }
 } // namespace bone

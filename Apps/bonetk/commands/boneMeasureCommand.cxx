@@ -5,12 +5,15 @@
 #include "boneMeasureOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 
 #include "boneAtomicFile.h"
 #include "boneFileName.h"
 #include "boneLandmarkIO.h"
+#include "boneMeasurePage.h"
 #include "boneMeshIO.h"
 
+#include <filesystem>
 #include <sstream>
 
 namespace bone
@@ -26,6 +29,7 @@ struct MeasureOptions
   MeasureParameters   parameters;
   std::string         output;
   std::string         landmarksOutput;
+  PageOption          page;
 };
 
 bool
@@ -108,9 +112,19 @@ ReadGivenLandmarks(const MeasureOptions & options, const MeshArrays & model)
     return {};
   }
   const auto landmarks = ReadLandmarks(options.landmarks);
-  return options.standard.empty()
-           ? landmarks
-           : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model);
+  return options.standard.empty() ? landmarks : CarryLandmarks(ReadFirstLevel(options.standard), landmarks, model);
+}
+
+void
+WriteMeasurePage(const MeasureOptions & options,
+                 const MeasureReport &  report,
+                 const MeshArrays &     model,
+                 const Session &        session)
+{
+  std::vector<ParameterValue> parameters;
+  AddParameters("measure", options.parameters, parameters);
+  ReportPage page = MakeMeasurePage(std::filesystem::path(options.model).filename().string(), report, model);
+  WritePage(page, options.page.NameOf(options.output), session, std::move(parameters), {});
 }
 
 void
@@ -127,8 +141,11 @@ RunMeasure(const MeasureOptions & options, Session & session)
   {
     throw UsageError("--standard and --write-landmarks need --landmarks");
   }
-  VerifyOutputs({ { options.output, { ".json" } }, { options.landmarksOutput, { ".mrk.json" } } });
+  VerifyOutputs({ { options.output, { ".json" } },
+                  { options.landmarksOutput, { ".mrk.json" } },
+                  { options.page.NameOf(options.output), {} } });
   MeasureReport report;
+  MeshArrays    model;
   if (surface)
   {
     report =
@@ -136,7 +153,7 @@ RunMeasure(const MeasureOptions & options, Session & session)
   }
   else
   {
-    const MeshArrays model = ReadFirstLevel(options.model);
+    model = ReadFirstLevel(options.model);
     report = MeasureModel(model, ReadGivenLandmarks(options, model), solids, options.parameters);
   }
   PrintMeasures(report, session);
@@ -146,6 +163,10 @@ RunMeasure(const MeasureOptions & options, Session & session)
   if (!options.landmarksOutput.empty())
   {
     WriteLandmarks(report.landmarks, options.landmarksOutput);
+  }
+  if (options.page.IsOn())
+  {
+    WriteMeasurePage(options, report, model, session);
   }
 }
 } // namespace
@@ -178,6 +199,7 @@ AddMeasureCommand(CLI::App & app, Action & action)
   AddParameterOptions(command, options->parameters);
   command->add_option("-o,--output", options->output, "Report to write (.json)")->required();
   command->add_option("--write-landmarks", options->landmarksOutput, "Landmarks on the model to write (.mrk.json)");
+  options->page.AddTo(command);
   command->callback([options, &action] { action = [options](Session & session) { RunMeasure(*options, session); }; });
 }
 } // namespace bone

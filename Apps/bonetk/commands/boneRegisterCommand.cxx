@@ -13,10 +13,12 @@
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneMeshIO.h"
+#include "boneRegistrationPage.h"
 #include "boneRegistrationReport.h"
 #include "boneTransformIO.h"
 
 #include <cstdio>
+#include <filesystem>
 
 namespace bone
 {
@@ -121,6 +123,26 @@ CorrectViews(const RegisterRigidOptions &        options,
   return views;
 }
 
+void
+WriteRigidPage(const RegisterRigidOptions & options,
+               unsigned int                 body,
+               const nlohmann::json &       report,
+               const std::vector<Canvas> &  pictures,
+               const MeshArrays &           mesh,
+               const Session &              session)
+{
+  std::vector<ParameterValue> parameters;
+  AddParameters("registration", options.rigid, parameters);
+  AddParameters("X-rays", options.views.preprocess, parameters);
+  const std::string name = std::filesystem::path(options.models[body]).filename().string();
+  ReportPage        page = MakeRegistrationPage(name, "register rigid", report, pictures, mesh);
+  WritePage(page,
+            options.views.page.NameOf(OutputOf(options, body)),
+            session,
+            std::move(parameters),
+            { { "registration", report["seconds"].get<double>() } });
+}
+
 /** Files, lines and warnings of one body. */
 void
 ReportBody(const RegisterRigidOptions &      options,
@@ -143,7 +165,8 @@ ReportBody(const RegisterRigidOptions &      options,
     report["viewCorrections"] = ReportViewCorrections(registration.GetViewCorrections());
   }
   WriteFileAtomically(output + ".json", report.dump(1) + "\n");
-  WriteRegistrationPictures(views, model.GetMesh(0)->GetArrays(), result.pose, output);
+  const MeshArrays mesh = model.GetMesh(0)->GetArrays();
+  const auto       pictures = WriteRegistrationPictures(views, mesh, result.pose, output);
   PrintResult(options.models[body], result, session);
   if (result.quality != RegistrationQuality::Ok)
   {
@@ -151,6 +174,10 @@ ReportBody(const RegisterRigidOptions &      options,
                        (result.quality == RegistrationQuality::Failed
                           ? "likely wrong: give a better --initial, landmarks, or a larger --search"
                           : "not distinct: look at the pictures"));
+  }
+  if (options.views.page.IsOn())
+  {
+    WriteRigidPage(options, body, report, pictures, mesh, session);
   }
 }
 
@@ -164,6 +191,7 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
     const std::string output = OutputOf(options, body);
     files.push_back({ output + ".tfm", {} });
     files.push_back({ output + ".json", {} });
+    files.push_back({ options.views.page.NameOf(output), {} });
     for (std::size_t v = 0; v < options.views.xrays.size(); ++v)
     {
       files.push_back({ PictureNameOf(output, v), {} });

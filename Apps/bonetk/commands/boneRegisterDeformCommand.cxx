@@ -14,10 +14,12 @@
 #include "boneIOError.h"
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
+#include "boneRegistrationPage.h"
 #include "boneRegistrationReport.h"
 #include "boneTransformIO.h"
 
 #include <cstdio>
+#include <filesystem>
 
 namespace bone
 {
@@ -81,9 +83,11 @@ VerifyDeformOptions(const RegisterDeformOptions & options)
       "well the start is known, or a second X-ray");
   }
   const std::string &     output = options.output;
-  std::vector<OutputFile> files{
-    { output + ".vtu", {} }, { output + ".tfm", {} }, { output + ".json", {} }, { output + "_posterior.h5", {} }
-  };
+  std::vector<OutputFile> files{ { output + ".vtu", {} },
+                                 { output + ".tfm", {} },
+                                 { output + ".json", {} },
+                                 { output + "_posterior.h5", {} },
+                                 { options.views.page.NameOf(output), {} } };
   for (int sample = 0; sample < options.samples; ++sample)
   {
     files.push_back({ SampleNameOf(options, sample), {} });
@@ -93,6 +97,30 @@ VerifyDeformOptions(const RegisterDeformOptions & options)
     files.push_back({ PictureNameOf(output, v), {} });
   }
   VerifyOutputs(files);
+}
+
+void
+WriteDeformPage(const RegisterDeformOptions &        options,
+                const nlohmann::json &               report,
+                const std::vector<Canvas> &          pictures,
+                const DeformableRegistrationResult & result,
+                const Session &                      session)
+{
+  MeshArrays bone = result.mesh;
+  for (Vector3 & x : bone.points)
+  {
+    x = result.pose.rotation.transpose() * x; // turned as the atlas is, whose space is the patient's
+  }
+  std::vector<ParameterValue> parameters;
+  AddParameters("registration", options.deformable, parameters);
+  AddParameters("X-rays", options.views.preprocess, parameters);
+  const std::string name = std::filesystem::path(options.output).filename().string();
+  ReportPage        page = MakeRegistrationPage(name, "register deform", report, pictures, bone);
+  WritePage(page,
+            options.views.page.NameOf(options.output),
+            session,
+            std::move(parameters),
+            { { "registration", report["seconds"].get<double>() } });
 }
 
 void
@@ -141,7 +169,8 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
   report["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   WriteFileAtomically(options.output + ".json", report.dump(1) + "\n");
   // The mesh lies in the views' space: the patient is turned there as the atlas was.
-  WriteRegistrationPictures(views, result.mesh, RigidPose(), options.output, result.pose.rotation);
+  const auto pictures =
+    WriteRegistrationPictures(views, result.mesh, RigidPose(), options.output, result.pose.rotation);
   PrintDeformation(options.model, report, session);
   if (result.quality != RegistrationQuality::Ok)
   {
@@ -149,6 +178,10 @@ RunRegisterDeform(const RegisterDeformOptions & options, Session & session)
                        (result.quality == RegistrationQuality::Failed
                           ? "likely wrong: give a better --initial, landmarks, or a larger --search"
                           : "not distinct: look at the pictures"));
+  }
+  if (options.views.page.IsOn())
+  {
+    WriteDeformPage(options, report, pictures, result, session);
   }
 }
 } // namespace

@@ -6,14 +6,17 @@
 #include "boneInputOptions.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 
 #include "boneAtomicFile.h"
 #include "boneDeformablePosterior.h"
 #include "boneMeshIO.h"
+#include "boneRegistrationPage.h"
 #include "boneRegistrationReport.h"
 #include "boneTransformIO.h"
 
 #include <chrono>
+#include <filesystem>
 
 namespace bone
 {
@@ -26,6 +29,7 @@ struct RegisterVolumeOptions
   std::string           series;
   AtlasVolumeParameters parameters;
   std::string           output;
+  PageOption            page;
 };
 
 void
@@ -37,7 +41,8 @@ RunRegisterVolume(const RegisterVolumeOptions & options, Session & session)
                   { output + "_labels.nii.gz", {} },
                   { output + ".tfm", {} },
                   { output + ".json", {} },
-                  { output + "_posterior.h5", {} } });
+                  { output + "_posterior.h5", {} },
+                  { options.page.NameOf(output), {} } });
   session.Expect({ { "reading", 1.0 }, { "register", 30.0 }, { "writing", 2.0 } });
   const CTImage::Pointer ct = [&] {
     const auto stage = session.BeginStage("reading");
@@ -55,6 +60,18 @@ RunRegisterVolume(const RegisterVolumeOptions & options, Session & session)
   report["image"] = options.ct;
   report["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   WriteFileAtomically(output + ".json", report.dump(1) + "\n");
+  if (options.page.IsOn())
+  {
+    std::vector<ParameterValue> parameters;
+    AddParameters("registration", options.parameters, parameters);
+    ReportPage page = MakeRegistrationPage(
+      std::filesystem::path(output).filename().string(), "register volume", report, {}, result.mesh);
+    WritePage(page,
+              options.page.NameOf(output),
+              session,
+              std::move(parameters),
+              { { "registration", report["seconds"].get<double>() } });
+  }
 }
 } // namespace
 
@@ -70,6 +87,7 @@ AddRegisterVolumeCommand(CLI::App & group, Action & action)
   command->add_option("ct", options->ct, "CT: an image file, or the folder of a DICOM series")->required();
   AddSeriesOption(command, options->series);
   AddParameterOptions(command, options->parameters);
+  options->page.AddTo(command);
   command->add_option("-o,--output", options->output, "Beginning of the names of the files to write")->required();
   command->callback(
     [options, &action] { action = [options](Session & session) { RunRegisterVolume(*options, session); }; });

@@ -5,14 +5,18 @@
 #include "boneDescribe.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 #include "bonePopulation.h"
 
+#include "boneAtlasReport.h"
+#include "boneAtomicFile.h"
 #include "boneFileName.h"
 #include "boneIOError.h"
 #include "boneModelIO.h"
 #include "boneStagingFolder.h"
 #include "boneStatisticalModelEstimator.h"
 
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -29,6 +33,8 @@ struct TrainOptions
   AtlasRegistrationParameters registration;
   StatisticalModelParameters  model;
   std::string                 registered;
+  std::string                 evaluation;
+  PageOption                  page;
   std::string                 output;
 };
 
@@ -56,10 +62,44 @@ RegistrationLine(const SubjectFiles &           subject,
   return os.str();
 }
 
+/** Leave-one-out evaluation where it was asked for, or where it takes but seconds. */
+AtlasReport
+EvaluateTraining(const TrainOptions &                options,
+                 const TrainingSet &                 set,
+                 const StatisticalModelEstimator<> & estimator,
+                 Session &                           session)
+{
+  constexpr std::size_t few = 40;
+  AtlasReport           report;
+  report.subjects = estimator.GetSubjectDeviations();
+  const std::size_t count = set.GetNumberOfSubjects();
+  if (!options.evaluation.empty() || (options.page.IsOn() && count >= 3 && count <= few))
+  {
+    const auto stage = session.BeginStage("evaluation");
+    EvaluateAtlas(set, *estimator.GetOutput(), report);
+  }
+  return report;
+}
+
+void
+WriteTrainingPage(const TrainOptions &     options,
+                  const StatisticalModel & model,
+                  const AtlasReport &      report,
+                  const Session &          session)
+{
+  std::vector<ParameterValue> parameters;
+  AddParameters("training", options.model, parameters);
+  AddParameters("registration", options.registration, parameters);
+  ReportPage page = MakeAtlasPage(model, report, std::filesystem::path(options.output).filename().string());
+  WritePage(page, options.page.NameOf(options.output), session, std::move(parameters), {});
+}
+
 void
 RunTrain(const TrainOptions & options, Session & session)
 {
-  VerifyOutputs({ { options.output, { ".h5" } } });
+  VerifyOutputs({ { options.output, { ".h5" } },
+                  { options.evaluation, { ".json" } },
+                  { options.page.NameOf(options.output), {} } });
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list);
   const std::string               standard = options.standard.empty() ? subjects.front().shape : options.standard;
   if (!HasExtension(standard, ".vtu"))
@@ -120,8 +160,17 @@ RunTrain(const TrainOptions & options, Session & session)
       session.Warn(os.str());
     }
   }
-  const auto writing = session.BeginStage("writing");
+  const AtlasReport report = EvaluateTraining(options, *set, *estimator, session);
+  const auto        writing = session.BeginStage("writing");
   WriteStatisticalModel(estimator->GetOutput(), options.output);
+  if (!options.evaluation.empty())
+  {
+    WriteFileAtomically(options.evaluation, ReportAtlas(report).dump(1) + '\n');
+  }
+  if (options.page.IsOn())
+  {
+    WriteTrainingPage(options, *estimator->GetOutput(), report, session);
+  }
   if (!options.registered.empty())
   {
     folder.Commit();
@@ -157,6 +206,12 @@ AddTrainCommand(CLI::App & app, Action & action)
                         "outlierThreshold",
                         "rejectOutliers" });
   AddParameterOptions(command, options->registration, { "mirror", "method", "interior", "exteriorBound" });
+  command->add_option(
+    "--evaluation",
+    options->evaluation,
+    "Compactness, generalisation by leave-one-out and specificity, and how far each subject is from the "
+    "mean, to write (.json)");
+  options->page.AddTo(command);
   command->add_option("--registered", options->registered, "Folder to keep the registered subjects in; default: none");
   command->add_option("-o,--output", options->output, "Statistical model to write (.h5)")->required();
   command->callback([options, &action] { action = [options](Session & session) { RunTrain(*options, session); }; });

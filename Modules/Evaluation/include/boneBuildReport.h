@@ -47,7 +47,7 @@ struct BuildReport
   std::string              version;
   BuildFiles               files;
   std::string              registration; ///< of the atlas that found the bone, as JSON; empty without one
-  BuildParameters          parameters; ///< of the plan as asked for, of the stages as they ran
+  BuildParameters          parameters;   ///< of the plan as asked for, of the stages as they ran
   Resolution               resolution;
   std::size_t              slices{ 0 };
   double                   meanSliceDistance{ 0.0 }; ///< mm, between the slices kept

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneMeshImageMetrics.h"
 
+#include "boneOrthonormalBasis.h"
 #include "boneTriangleTree.h"
 
 #include <algorithm>
@@ -164,6 +165,28 @@ CompareWithImage(const MeshArrays & mesh, const CTImage * ct, const LabelImage *
       value = density[offset];
       return inside[offset] != 0;
     });
+}
+
+std::vector<double>
+DegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask)
+{
+  std::vector<double> errors;
+  MeshArrays          cut = mesh;
+  const auto          from = static_cast<std::size_t>(BernsteinCount(mesh.maximumDegree));
+  for (int degree = 0; degree < mesh.maximumDegree; ++degree)
+  {
+    const auto count = static_cast<std::size_t>(BernsteinCount(degree));
+    cut.maximumDegree = degree;
+    cut.coefficients.assign(count * mesh.tetrahedra.size(), 0.0);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    {
+      cut.degree[t] = std::min(degree, mesh.degree[t]);
+      BernsteinReduce(mesh.degree[t], &mesh.coefficients[t * from], cut.degree[t], &cut.coefficients[t * count]);
+    }
+    errors.push_back(CompareWithImage(cut, ct, mask).meanAbsolutePercent);
+  }
+  errors.push_back(CompareWithImage(mesh, ct, mask).meanAbsolutePercent);
+  return errors;
 }
 
 std::array<double, 2>

@@ -46,8 +46,8 @@ PackIds(const std::vector<IdType> & ids, std::size_t delta);
 nlohmann::json
 PackLevel(const std::string & name, const MeshArrays & mesh, double coefficientStep);
 
-/** A step by which a picture of the mesh's density cannot be told from the density itself: a 1,000th of the range of 98
- * % of its coefficients. */
+/** A step by which a picture of the mesh's density cannot be told from the density itself: a 500th of the range of 98 %
+ * of its coefficients, that is an error below a 4,000th on average. */
 double
 PictureStep(const MeshArrays & mesh);
 
@@ -65,8 +65,8 @@ PackModel(const std::vector<NamedMesh> & levels,
           const ContourStack *           contours,
           const std::vector<Landmark> &  landmarks);
 
-/** The CT on every slice of a stack in grey, with the slice's contours: values within the window, in 256 steps, pixels
- * as small as 800,000 of them allow, but not below a third of a mm. `titles`: one a slice. */
+/** The CT on every slice of a stack in grey, with the slice's contours: values within the window as a JPEG, pixels as
+ * small as 600,000 of them allow, but not smaller than voxels. `titles`: one a slice. */
 nlohmann::json
 PackSlices(const CTImage *                  ct,
            const ContourStack &             stack,

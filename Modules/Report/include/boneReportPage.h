@@ -48,7 +48,7 @@ public:
   AddText(const std::string & text);
   void
   AddTable(const PageTable & table);
-  /** A picture (bytes of a .png or .svg file), what it shows for those who cannot see it, and its caption. */
+  /** A picture (bytes of a .png, .jpg or .svg file), what it shows for those who cannot see it, and its caption. */
   void
   AddPicture(const std::string & bytes, const std::string & description, const std::string & caption);
 

@@ -3,9 +3,10 @@
  *=========================================================================*/
 #include "bonePageData.h"
 
+#include "bonePageParts.h"
+
 #include "boneBernstein.h"
 #include "boneDensityEvaluation.h"
-#include "bonePlaneView.h"
 
 #include <vtkBase64Utilities.h>
 
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <stdexcept>
 
@@ -152,7 +152,7 @@ StepOf(const std::vector<double> & values)
       return std::abs(a) < std::abs(b);
     }));
   // At most 31 bits, however far a single coefficient lies.
-  return std::max({ 1e-3 * (range[1] - range[0]), 1e-9 * largest, 1e-12 });
+  return std::max({ 2e-3 * (range[1] - range[0]), 1e-9 * largest, 1e-12 });
 }
 
 nlohmann::json
@@ -172,21 +172,6 @@ RegionNames(const MeshCells & mesh)
     names[std::to_string(region)] = RegionName(region);
   }
   return names;
-}
-
-/** "#rrggbb" */
-std::string
-ToHex(const Color & color)
-{
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0], color[1], color[2]);
-  return text;
-}
-
-nlohmann::json
-PackLetters(const SideLetters & letters)
-{
-  return { { "left", letters.left }, { "right", letters.right }, { "top", letters.top }, { "bottom", letters.bottom } };
 }
 
 nlohmann::json
@@ -369,77 +354,6 @@ PackModel(const std::vector<NamedMesh> & levels, const ContourStack * contours, 
     model["landmarks"].push_back({ { "name", landmark.name }, { "position", VectorJson(landmark.point) } });
   }
   return model;
-}
-
-nlohmann::json
-PackSlices(const CTImage *                  ct,
-           const ContourStack &             stack,
-           const Window &                   window,
-           const std::string &              unit,
-           const std::vector<std::string> & titles)
-{
-  constexpr double most = 800000.0; // pixels of all slices
-  constexpr double margin = 5.0;    // mm about the contours
-  constexpr double finest = 1.0 / 3.0;
-
-  const auto &         slices = stack.GetSlices();
-  std::vector<Vector3> points;
-  for (const ContourSlice & slice : slices)
-  {
-    for (const Contour & contour : slice.contours)
-    {
-      points.insert(points.end(), contour.points.begin(), contour.points.end());
-    }
-  }
-  // A frame of 1,000 pixels gives the sides' lengths; then as many pixels as there may be.
-  PlaneView    view = FramePlane(stack.GetNormal(), slices.front().origin, points, margin, 1000);
-  const double area = view.pixel * view.pixel * view.columns * view.rows * static_cast<double>(slices.size());
-  const double side = view.pixel * std::max(view.columns, view.rows);
-  view = FramePlane(stack.GetNormal(),
-                    slices.front().origin,
-                    points,
-                    margin,
-                    std::max(1, static_cast<int>(side / std::max(finest, std::sqrt(area / most)))));
-
-  const double        step = (window.upper - window.lower) / 255.0;
-  std::vector<double> values;
-  nlohmann::json      contours = nlohmann::json::array();
-  const Vector3       normal = stack.GetNormal();
-  const Vector3       flat = view.corner - view.corner.dot(normal) * normal;
-  for (std::size_t k = 0; k < slices.size(); ++k)
-  {
-    view.corner = flat + stack.GetHeight(k) * normal;
-    const Panel panel = SamplePlane(ct, view);
-    for (const float x : panel.values)
-    {
-      values.push_back(std::isnan(x) ? window.lower : std::min(std::max<double>(x, window.lower), window.upper));
-    }
-    nlohmann::json lines = nlohmann::json::array();
-    for (const Contour & contour : slices[k].contours)
-    {
-      const ContourStyle & style = StyleOf(contour);
-      std::vector<double>  pixels;
-      for (const Vector3 & x : contour.points)
-      {
-        const Vector2 p = view.Project(x);
-        pixels.push_back(0.01 * std::round(100.0 * p.x()));
-        pixels.push_back(0.01 * std::round(100.0 * p.y()));
-      }
-      lines.push_back(
-        { { "name", style.name }, { "color", ToHex(style.color) }, { "closed", !contour.axis }, { "points", pixels } });
-    }
-    contours.push_back(lines);
-  }
-  return { { "columns", view.columns },
-           { "rows", view.rows },
-           { "count", slices.size() },
-           { "pixel", view.pixel },
-           { "values", PackNumbers(values, step, { window.lower }, 0) },
-           { "unit", unit },
-           { "window", { window.lower, window.upper } },
-           { "letters", PackLetters(LettersOf(view.right, view.down)) },
-           { "titles", titles },
-           { "contours", contours } };
 }
 
 nlohmann::json

@@ -139,10 +139,11 @@ ReportPage::AddTable(const PageTable & table)
 void
 ReportPage::AddPicture(const std::string & bytes, const std::string & description, const std::string & caption)
 {
-  const bool png = bytes.compare(0, 4, "\x89PNG") == 0;
-  m_Sections.back().body += std::string("<figure><img src=\"data:image/") + (png ? "png" : "svg+xml") + ";base64," +
-                            ToBase64(bytes) + "\" alt=\"" + Escape(description) + "\">" +
-                            Element("figcaption", caption) + "</figure>\n";
+  const char * type = bytes.compare(0, 4, "\x89PNG") == 0    ? "png"
+                      : bytes.compare(0, 2, "\xff\xd8") == 0 ? "jpeg"
+                                                             : "svg+xml";
+  m_Sections.back().body += std::string("<figure><img src=\"data:image/") + type + ";base64," + ToBase64(bytes) +
+                            "\" alt=\"" + Escape(description) + "\">" + Element("figcaption", caption) + "</figure>\n";
 }
 
 void
