@@ -77,6 +77,15 @@ TEST(Figure, VoxelsThatAreNotSquareHaveTheirTrueAspect)
   EXPECT_NEAR(LongestDarkRun(Draw(cell).GetImage(), 95), ScaleBarLength(cell.panel, cell.style) / 0.5, 1.0);
 }
 
+TEST(PanelPoint, WholePixelsAreCentres)
+{
+  const Panel     panel = Cell(3, 2, 0.0F).panel;
+  const Rectangle place{ 10.0, 20.0, 30.0, 40.0 };
+  EXPECT_EQ(PanelPoint(place, panel, { 0.0, 0.0 }), Vector2(15.0, 30.0));
+  EXPECT_EQ(PanelPoint(place, panel, { -0.5, -0.5 }), Vector2(10.0, 20.0));
+  EXPECT_EQ(PanelPoint(place, panel, { 2.5, 1.5 }), Vector2(40.0, 60.0));
+}
+
 TEST(Figure, LettersStandAtTheirSides)
 {
   PanelCell cell = Cell(100, 80, 0.0F);
