@@ -467,6 +467,9 @@ test('dark and light have their backgrounds, print is light without controls, na
   assert.deepEqual(await corner(page), [255, 255, 255]);
   assert.equal(await page.$eval('.controls', (node) => getComputedStyle(node).display), 'none');
   await page.emulateMediaType('screen');
+  await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: 'dark' }]);
+  await settled(page);
+  assert.ok(Math.max(...(await corner(page))) < 80);
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
   assert.deepEqual(colourAt(await pixels(page, '#view3d .printed'), [3, 3]), [255, 255, 255]);
   await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));

@@ -38,7 +38,7 @@ export function colourBar({ quantity, unit, range }, gradient = densityGradient(
   return element(
     'div',
     { className: 'colour-bar' },
-    element('div', { className: 'colour-bar-title' }, unit ? `${quantity} (${unit})` : quantity),
+    element('div', { className: 'colour-bar-title' }, unit && unit !== quantity ? `${quantity} (${unit})` : quantity),
     element('div', { className: 'colour-bar-strip', style: `background: ${gradient}` }),
     element('div', { className: 'colour-bar-ticks' }, ...marks)
   );
