@@ -213,7 +213,7 @@ nlohmann::json
 DescribeDensity(const MeshCells & mesh)
 {
   nlohmann::json json = { { "unit", DensityUnitName(mesh.quantity) },
-                          { "quantity", DensityQuantityName(mesh.quantity) },
+                          { "quantity", "density" },
                           { "regions", RegionNames(mesh) } };
   const auto     range = Percentiles(UsedCoefficients(mesh), 0.02);
   json["range"] = { range[0], std::max(range[1], range[0] + 1e-9) };
