@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The commands one after the other on a small phantom, the example programs, and what `info` and `validate` say."""
+import json
 import os
 import re
 
@@ -215,9 +216,23 @@ class Commands(TestCase):
             lines.append(f"m{subject}.vtu, ct{subject}.nii.gz")
         with open("subjects.txt", "w") as file:
             file.write("# shape, CT\n" + "\n".join(lines) + "\n")
-        out, _ = self.succeed("train", "subjects.txt", "--degree", 1, "--variance", 1, "--registered", "meshes", "-o", "atlas.h5")
+        out, _ = self.succeed("train", "subjects.txt", "--degree", 1, "--variance", 1, "--registered", "meshes",
+                              "--evaluation", "atlas.json", "--no-page", "-o", "atlas.h5")
         self.assertIn("shape modes                 2", out)
         self.assertEqual(len(os.listdir("meshes")), 3)
+        self.assertFalse(os.path.exists("atlas.html"))
+        with open("atlas.json") as file:
+            evaluation = json.load(file)
+        self.assertEqual([s["name"] for s in evaluation["subjects"]], ["m0", "m1", "m2"])
+        self.assertEqual([q["modes"] for q in evaluation["shape"]], [0, 1])
+        for kind, error in (("shape", "generalisationMm"), ("density", "meanAbsolute")):
+            none, one = evaluation[kind]
+            self.assertEqual(none["compactness"], 0)
+            self.assertTrue(0 < one["compactness"] < 1)
+            self.assertTrue(0 < one[error]["mean"] < none[error]["mean"])
+        self.succeed("evaluate", "m1.vtu", "atlas.h5", "--ct", "ct1.nii.gz", "-o", "e.json")
+        with open("e.html") as file:
+            self.assertIn("<title>BoneTK report: m1.vtu</title>", file.read())
         for mesh in os.listdir("meshes"):
             self.succeed("validate", "meshes/" + mesh)
         out, _ = self.succeed("info", "atlas.h5")

@@ -4,15 +4,18 @@
 #include "boneCommands.h"
 #include "boneOptions.h"
 #include "boneParameterOptions.h"
+#include "boneResultPage.h"
 
 #include "boneAtomicFile.h"
 #include "boneIOError.h"
 #include "boneModelIO.h"
 #include "bonePopulation.h"
 #include "boneSubjectEvaluation.h"
+#include "boneSubjectPage.h"
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -27,6 +30,7 @@ struct EvaluateOptions
   std::string                 ct;
   AtlasRegistrationParameters registration;
   std::string                 output;
+  PageOption                  page;
 };
 
 nlohmann::json
@@ -55,7 +59,7 @@ Describe(const char * what, const Usualness & of)
 void
 RunEvaluate(const EvaluateOptions & options, Session & session)
 {
-  VerifyOutputs({ { options.output, { ".json" } } });
+  VerifyOutputs({ { options.output, { ".json" } }, { options.page.NameOf(options.output), {} } });
   const auto   atlas = ReadStatisticalModel(options.atlas);
   const auto & content = atlas->GetContent();
   auto         standard = DensityMesh<double>::New();
@@ -108,6 +112,12 @@ RunEvaluate(const EvaluateOptions & options, Session & session)
     session.WarnAlways(options.model + ": the shape is no bone of this atlas, or wrongly registered: it is three times "
                                        "as far from the modes as the atlas' own subjects");
   }
+  if (options.page.IsOn())
+  {
+    const std::string name = std::filesystem::path(options.model).filename().string();
+    ReportPage        page = MakeSubjectPage(name, result, subject, content);
+    WritePage(page, options.page.NameOf(options.output), session, {}, {});
+  }
 }
 } // namespace
 
@@ -122,6 +132,7 @@ AddEvaluateCommand(CLI::App & app, Action & action)
   command->add_option("atlas", options->atlas, "Statistical model (.h5)")->required();
   command->add_option("--ct", options->ct, "The subject's CT, for the density of a surface; default: the mesh's own");
   AddParameterOptions(command, options->registration, { "mirror" });
+  options->page.AddTo(command);
   command->add_option("-o,--output", options->output, "Evaluation to write (.json)")->required();
   command->callback([options, &action] { action = [options](Session & session) { RunEvaluate(*options, session); }; });
 }
