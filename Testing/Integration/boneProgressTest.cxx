@@ -63,6 +63,8 @@ TEST(Progress, NeverFalls)
   EXPECT_EQ(progress.GetStage(), "");
   progress.Report(progress.Begin("a"), 0.1);
   EXPECT_DOUBLE_EQ(progress.GetShare(), 0.75);
+  progress.Expect({ { "b", 1.0 } });
+  EXPECT_DOUBLE_EQ(progress.GetShare(), 0.75);
 }
 
 TEST(Progress, JobsFillTheirPartsAndGiveUpWhatRan)

@@ -61,9 +61,11 @@ void
 WriteImage(const LabelImage * image, const std::string & path);
 void
 WriteImage(const itk::Image<float, 2> * image, const std::string & path);
-/** Pictures are written as .png. */
+/** Pictures are written as .png, of 8 or 16 bits. */
 void
 WriteImage(const itk::Image<unsigned char, 2> * image, const std::string & path);
+void
+WriteImage(const itk::Image<unsigned short, 2> * image, const std::string & path);
 void
 WriteImage(const PictureImage * image, const std::string & path);
 /** \} */

@@ -165,7 +165,16 @@ TEST_F(ImageIOTest, PicturesAreWritten)
   EXPECT_TRUE(
     std::equal(colours->GetBufferPointer(), colours->GetBufferPointer() + 12, coloursRead->GetBufferPointer()));
   WriteImage(MakeImage<itk::Image<float, 2>>({ { 4, 3 } }), Path("f.mha"));
-  EXPECT_THAT(Files(), ElementsAre("f.mha", "g.png", "p.png"));
+  auto deep = MakeImage<itk::Image<unsigned short, 2>>({ { 4, 3 } });
+  for (unsigned short i = 0; i < 12; ++i)
+  {
+    deep->GetBufferPointer()[i] = static_cast<unsigned short>(5000 * i + i);
+  }
+  WriteImage(deep, Path("d.png"));
+  const auto deepRead = itk::ReadImage<itk::Image<unsigned short, 2>>(Path("d.png"));
+  ASSERT_EQ(deepRead->GetBufferedRegion().GetSize(), deep->GetBufferedRegion().GetSize());
+  EXPECT_TRUE(std::equal(deep->GetBufferPointer(), deep->GetBufferPointer() + 12, deepRead->GetBufferPointer()));
+  EXPECT_THAT(Files(), ElementsAre("d.png", "f.mha", "g.png", "p.png"));
 }
 
 TEST_F(ImageIOTest, APictureOnAFullDiskIsAnError)

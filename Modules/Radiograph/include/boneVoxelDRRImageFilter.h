@@ -21,7 +21,9 @@ namespace bone
  * value falls linearly.
  *
  * Parameters: \ref VoxelDRRParameters and \ref RadiographParameters. HU are converted voxel by voxel before
- * interpolation; values below -1000 HU (padding) then count as air.
+ * interpolation; values below -1000 HU (padding) then count as air. Without a conversion the values themselves are
+ * integrated: a CT's air then counts -1000 HU along its whole way. With AboveAir (default off) a voxel counts max(0, HU
+ * + 1000) instead, so that air is 0, and the integral of a homogeneous object is its chord times HU + 1000.
  *
  * Refused: a mask on another grid, and one without a voxel of the label. */
 template <typename TInputImage = itk::Image<float, 3>,

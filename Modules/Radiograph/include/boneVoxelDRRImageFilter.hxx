@@ -106,6 +106,8 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
   }
   grid.values.resize(region.GetNumberOfPixels());
   const auto   curve = this->GetCurve();
+  const bool   aboveAir = m_Parameters.aboveAir && curve.huToAttenuation == HUToAttenuation::None;
+  const auto   valueOf = [&](double hu) { return aboveAir ? std::max(0.0, hu + 1000.0) : curve.At(hu); };
   const auto   rows = static_cast<std::size_t>(grid.size[1]);
   const auto   slice = rows * grid.size[0];
   const auto & first = region.GetIndex();
@@ -122,7 +124,7 @@ VoxelDRRImageFilter<TInputImage, TOutputImage, TMaskImage>::CopyGrid(const Regio
       for (int x = 0; x < grid.size[0]; ++x)
       {
         const bool counts = label == nullptr || this->IsMasked(label[x]);
-        to[x] = counts ? static_cast<float>(curve.At(from[x])) : 0.0f;
+        to[x] = counts ? static_cast<float>(valueOf(from[x])) : 0.0f;
       }
     }
   });

@@ -241,6 +241,48 @@ TEST(VoxelDRRImageFilter, WaterScaledTakesWhatIsLessThanAirAsAir)
   EXPECT_NEAR(Pixels(filter)[(view.size[1] / 2) * view.size[0] + view.size[0] / 2], 0.02 * 20 * 0.8, 1e-5);
 }
 
+TEST(VoxelDRRImageFilter, AboveAirTakesAirAsNothing)
+{
+  // Padding, air, and 20 voxels of 0.8 mm with 300 HU.
+  const auto image =
+    MakeImage<Image>([](const Vector3 & i) { return i[0] < 5 ? -3000.0 : (i[0] < 20 ? -1000.0 : 300.0); });
+  auto geometry = Look(turn * Vector3::UnitX(), true);
+  auto filter = Filter::New();
+  filter->SetInput(image);
+  filter->SetGeometry(geometry);
+  const auto & view = geometry->GetView();
+  const auto   centre = (view.size[1] / 2) * view.size[0] + view.size[0] / 2;
+  EXPECT_NEAR(Pixels(filter)[centre], 0.8 * (5 * -3000 + 15 * -1000 + 20 * 300), 1e-2); // the default: as it is
+  filter->AboveAirOn();
+  EXPECT_NEAR(Pixels(filter)[centre], 0.8 * 20 * 1300, 1e-2);
+  const auto mask = MakeImage<Mask>([](const Vector3 & i) { return i[0] < 30 ? 1 : 0; });
+  filter->SetMask(mask);
+  EXPECT_NEAR(Pixels(filter)[centre], 0.8 * 10 * 1300, 1e-2); // 0 outside of the mask
+  filter->SetMask(nullptr);
+  filter->SetHUToAttenuation(HUToAttenuation::WaterScaled);
+  filter->SetWaterAttenuation(0.02);
+  EXPECT_NEAR(Pixels(filter)[centre], 0.02 * 20 * 0.8 * 1.3, 1e-5); // has no effect then
+}
+
+TEST(VoxelDRRImageFilter, AboveAirOfAHomogeneousBoxIsItsChords)
+{
+  const auto box = MakeImage<Image>([](const Vector3 &) { return 250.0; });
+  for (const Vector3 & beam : beams)
+  {
+    const auto geometry = Look(beam);
+    auto       filter = Filter::New();
+    filter->SetInput(box);
+    filter->SetGeometry(geometry);
+    filter->AboveAirOn();
+    const float * pixels = Pixels(filter);
+    const auto    chords = Expected(geometry, [](const Vector3 & a, const Vector3 & b) { return (b - a).norm(); });
+    for (std::size_t i = 0; i < chords.size(); ++i)
+    {
+      ASSERT_NEAR(pixels[i], 1250.0 * chords[i], 0.1) << i << " of " << beam.transpose();
+    }
+  }
+}
+
 TEST(VoxelDRRImageFilter, HasTheSameOutputForAnyNumberOfThreads)
 {
   const auto image =

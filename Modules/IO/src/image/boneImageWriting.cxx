@@ -12,6 +12,8 @@
 
 #include <png.h>
 
+#include <csetjmp>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -71,6 +73,59 @@ ToPng(const void * pixels, const itk::ImageRegion<2> & region, png_uint_32 forma
     Refuse("cannot be made a PNG file: ", image.message);
   }
   bytes.resize(size);
+  return bytes;
+}
+
+void
+AppendBytes(png_structp png, png_bytep bytes, png_size_t size)
+{
+  try
+  {
+    static_cast<std::string *>(png_get_io_ptr(png))->append(reinterpret_cast<const char *>(bytes), size);
+  }
+  catch (const std::exception &)
+  {
+    png_error(png, "not enough memory"); // nothing may be thrown through the library
+  }
+}
+
+/** The file of a picture of 16 bits, which has the meaning that one of 8 bits has. (Those of png_image are linear:
+ * viewers show them brighter.) */
+std::string
+ToPng16(const unsigned short * pixels, const itk::ImageRegion<2> & region)
+{
+  std::string bytes;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop   info = png == nullptr ? nullptr : png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0)
+  {
+    png_destroy_write_struct(&png, &info);
+    Refuse("cannot be made a PNG file");
+  }
+  png_set_write_fn(png, &bytes, AppendBytes, nullptr);
+  const auto width = static_cast<png_uint_32>(region.GetSize(0)), height = static_cast<png_uint_32>(region.GetSize(1));
+  png_set_IHDR(png,
+               info,
+               width,
+               height,
+               16,
+               PNG_COLOR_TYPE_GRAY,
+               PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_write_info(png, info);
+  const std::uint16_t one = 1;
+  if (*reinterpret_cast<const unsigned char *>(&one) == 1)
+  {
+    png_set_swap(png);
+  }
+  for (png_uint_32 row = 0; row < height; ++row)
+  {
+    png_write_row(png, reinterpret_cast<png_const_bytep>(pixels + static_cast<std::size_t>(row) * width));
+  }
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
   return bytes;
 }
 
@@ -134,6 +189,14 @@ void
 WriteImage(const itk::Image<unsigned char, 2> * image, const std::string & path)
 {
   WritePicture(image, path, PNG_FORMAT_GRAY);
+}
+
+void
+WriteImage(const itk::Image<unsigned short, 2> * image, const std::string & path)
+{
+  RequireExtension(path, { ".png" });
+  WriteFileAtomically(path,
+                      NamingFile(path, [&] { return ToPng16(image->GetBufferPointer(), image->GetBufferedRegion()); }));
 }
 
 void
