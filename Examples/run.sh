@@ -21,7 +21,7 @@ for file in "${@:1:2}"; do
 done
 
 "$root/CMake/install-packages.sh"
-(cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release)
+(cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release --target bonetk)
 bonetk=$root/build/release/Apps/bonetk/bonetk
 
 mkdir -p "$root/out"
@@ -45,6 +45,7 @@ fi
 
 echo
 echo "Results in $out:"
+echo "  report.html                             a page that shows it all: the model in 3D, slices, pictures, figures"
 echo "  report.txt, report.json                 counts, errors and times"
 echo "  slices.png                              the CT's slices with the contours"
 echo "  cut_plane.png                           CT, model and difference on a plane, level by level"
