@@ -394,6 +394,43 @@ test('slices: slider, keys and window change the picture, the title names the sl
   await page.close();
 });
 
+test('slices in a JPEG have the grey values of their tiles', async () => {
+  // Five slices of 30 x 20 in tiles of 32 x 24, two in a row: a slope in each, which differs in direction and height.
+  const [columns, rows, count, across, tile] = [30, 20, 5, 2, [32, 24]];
+  const slope = (k, column, row) => 20 + 30 * k + (k % 2 ? 3 * column : 4 * row);
+  const blank = await browser.newPage();
+  const jpeg = await blank.evaluate(
+    (size, greys) => {
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = size;
+      const context = canvas.getContext('2d');
+      const image = context.createImageData(...size);
+      greys.forEach((grey, i) => image.data.set([grey, grey, grey, 255], 4 * i));
+      context.putImageData(image, 0, 0);
+      return canvas.toDataURL('image/jpeg', 1).split(',')[1];
+    },
+    [across * tile[0], 3 * tile[1]],
+    Array.from({ length: 3 * tile[1] * across * tile[0] }, (_, i) => {
+      const [x, y] = [i % (across * tile[0]), Math.floor(i / (across * tile[0]))];
+      const k = Math.floor(y / tile[1]) * across + Math.floor(x / tile[0]);
+      return slope(k, x % tile[0], y % tile[1]);
+    })
+  );
+  await blank.close();
+  const data = slicesData({ columns, rows, count });
+  data.values = { jpeg, across, tile, step: 5, offset: -100 };
+  const { page, log } = await rendered({ name: 'solid', slices: data });
+  const values = await page.evaluate(() => [...window.bonetkPage.slices.values]);
+  assert.equal(values.length, columns * rows * count);
+  values.forEach((value, i) => {
+    const [k, row, column] = [Math.floor(i / (columns * rows)), Math.floor(i / columns) % rows, i % columns];
+    const expected = -100 + 5 * slope(k, column, row);
+    assert.ok(Math.abs(value - expected) <= 10, `slice ${k}, column ${column}, row ${row}: ${value}, not ${expected}`);
+  });
+  assert.deepEqual(log, []);
+  await page.close();
+});
+
 test('atlas: modes change the model and its radiograph, reset brings both back, animation moves them', async () => {
   const { page, log } = await rendered({ name: 'atlas', atlas: atlasData() });
   const radiograph = '.radiograph canvas';

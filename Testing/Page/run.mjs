@@ -1,6 +1,6 @@
-// Runs a script of this folder with Chromium: node run.mjs FOLDER BUNDLE SCRIPT [--test]. FOLDER receives the packages
-// of package-lock.json, BUNDLE is the folder of the page's bundle. Exits 77 (skipped) where Chromium, the packages or
-// the bundle cannot be had.
+// Runs a script of this folder, in JavaScript or Python, with Chromium: node run.mjs FOLDER BUNDLE SCRIPT [--test].
+// FOLDER receives the packages of package-lock.json, BUNDLE is the folder of the page's bundle. Exits 77 (skipped) where
+// Chromium, the packages or the bundle cannot be had.
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -47,7 +47,8 @@ if (!existsSync(join(bundle, 'bundle.txt'))) {
 }
 const path = chromium();
 install();
-const result = spawnSync(process.execPath, [...options, fileURLToPath(new URL(script, import.meta.url))], {
+const program = script.endsWith('.py') ? (process.env.BONETK_PYTHON ?? 'python3') : process.execPath;
+const result = spawnSync(program, [...options, fileURLToPath(new URL(script, import.meta.url))], {
   stdio: 'inherit',
   env: { ...process.env, BONETK_PAGE_MODULES: folder, BONETK_PAGE_BUNDLE: bundle, BONETK_CHROMIUM: path }
 });

@@ -173,9 +173,14 @@ export class Atlas {
     this.waiting = setTimeout(() => this.drawRadiograph(this.data.view), 250);
   }
 
+  /** In grey values of one range, that of the mean and a fifth more: a denser bone is brighter. */
   drawRadiograph(view) {
     const integrals = radiograph(this.mesh, view);
-    const range = integrals.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [0, 0]);
+    this.range ??= integrals.reduce(
+      ([low, high], value) => [Math.min(low, value), Math.max(high, 1.2 * value)],
+      [0, 0]
+    );
+    const { range } = this;
     this.canvas.width = view.size[0];
     this.canvas.height = view.size[1];
     const context = this.canvas.getContext('2d');

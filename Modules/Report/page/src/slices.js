@@ -104,7 +104,11 @@ export class Slices {
   }
 
   showBar() {
-    const description = { quantity: 'Grey value', unit: this.data.unit, range: [this.low, this.high] };
+    const description = {
+      quantity: this.data.unit === 'HU' ? 'CT number' : 'Density',
+      unit: this.data.unit,
+      range: [this.low, this.high]
+    };
     this.barPlace.replaceChildren(colourBar(description, 'linear-gradient(to right, #000, #fff)'));
   }
 

@@ -1,0 +1,363 @@
+#!/usr/bin/env python3
+"""The pages that bonetk writes, in headless Chromium: is each bead where its place in the world says, in CTs of any orientation;
+has the cut the model's density; do all commands' pages open. Run by run.mjs; BONETK is the program."""
+import base64
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+from vtkmodules.vtkIOImage import vtkMetaImageReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+sys.path.insert(0, str(HERE.parent / "Integration"))
+import bead_phantom as phantom  # noqa: E402
+from bonetk_testing import bonetk, read_json, write_json  # noqa: E402
+
+LETTERS = {letter: sign * numpy.eye(3)[axis] for axis, pair in enumerate(("LR", "PA", "SI")) for letter, sign in zip(pair, (1, -1))}
+PLANES = {"sagittal": (0, "left"), "coronal": (1, "anterior"), "axial": (2, "superior")}  # axis, and whence it is seen
+# To the right and upward in the picture, by whence it is seen.
+VIEWS = {"anterior": "LS", "posterior": "RS", "left": "PS", "right": "AS", "superior": "RA", "inferior": "LA"}
+YELLOW = (253, 231, 37)  # the colours' upper end
+
+
+def must(*command):
+    code, out, err = bonetk(*command)
+    assert code == 0, f"bonetk {command}: {out}{err}"
+
+
+def look(page, **request):
+    """What look.mjs sees on a page."""
+    with tempfile.TemporaryDirectory() as folder:
+        asked, seen = os.path.join(folder, "asked.json"), os.path.join(folder, "seen.json")
+        write_json({"page": os.path.abspath(page), **request}, asked)
+        done = subprocess.run(["node", HERE / "look.mjs", asked, seen], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return read_json(seen)
+
+
+def numbers(text, kind=numpy.float64):
+    return numpy.frombuffer(base64.b64decode(text), kind)
+
+
+def picture(seen):
+    """Red, green, blue and alpha by row and column."""
+    return numbers(seen["data"], numpy.uint8).reshape(seen["rows"], seen["columns"], 4).astype(int)
+
+
+def eroded(mask, reach):
+    """Pixels whose square of `reach` pixels on each side is in the mask."""
+    size = 2 * reach + 1
+    for axis in (0, 1):
+        sums = numpy.cumsum(numpy.insert(mask.astype(int), 0, 0, axis), axis)
+        length = sums.shape[axis]
+        full = sums.take(range(size, length), axis) - sums.take(range(length - size), axis) == size
+        padding = [(0, 0), (0, 0)]
+        padding[axis] = (reach, reach)
+        mask = numpy.pad(full, padding)
+    return mask
+
+
+def centre_of(mask):
+    """Column and row."""
+    rows, columns = numpy.nonzero(mask)
+    assert len(rows), "there is nothing"
+    return numpy.array([columns.mean(), rows.mean()])
+
+
+class Model:
+    """A density model's value at points, from its file by the polynomials' definition."""
+
+    def __init__(self, path):
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        self.grid = reader.GetOutput()
+        self.points = vtk_to_numpy(self.grid.GetPoints().GetData()).astype(float)
+        self.cells = vtk_to_numpy(self.grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
+        data = self.grid.GetCellData()
+        self.degrees = vtk_to_numpy(data.GetArray("Degree"))
+        self.coefficients = vtk_to_numpy(data.GetArray("DensityCoefficients"))
+        self.locator = vtkStaticCellLocator()
+        self.locator.SetDataSet(self.grid)
+        self.locator.BuildLocator()
+
+    def density(self, x, inside=None):
+        """At a point, by the polynomial of the cell that holds it, or that holds `inside`."""
+        cell = self.locator.FindCell(x if inside is None else inside)
+        if cell < 0:
+            return numpy.nan
+        corners = self.points[self.cells[cell]]
+        later = numpy.linalg.solve((corners[1:] - corners[0]).T, x - corners[0])
+        b = [1 - later.sum(), *later]
+        n, value, index = int(self.degrees[cell]), 0.0, 0
+        factorial = numpy.cumprod([1, *range(1, n + 1)])
+        for i in range(n, -1, -1):
+            for j in range(n - i, -1, -1):
+                for k in range(n - i - j, -1, -1):
+                    l = n - i - j - k
+                    weight = factorial[n] / (factorial[i] * factorial[j] * factorial[k] * factorial[l])
+                    value += self.coefficients[cell, index] * weight * b[0] ** i * b[1] ** j * b[2] ** k * b[3] ** l
+                    index += 1
+        return value
+
+
+def cut_differences(model, cut, axis, count=400):
+    """How far the density of a page's cut across an axis is from the model's: at the corners of some of its triangles."""
+    points, densities = numbers(cut["points"]).reshape(-1, 3), numbers(cut["densities"])
+    triangles = numbers(cut["triangles"], numpy.uint32).reshape(-1, 3)
+    corners, values = points[triangles], densities[triangles]
+    edges = corners[:, [1, 2, 0]] - corners
+    with numpy.errstate(invalid="ignore"):
+        height = numpy.linalg.norm(numpy.cross(edges[:, 0], edges[:, 1]), axis=1) / numpy.linalg.norm(edges, axis=2).max(axis=1)
+    differences, aside = [], 5e-3 * numpy.eye(3)[axis]
+    for t in numpy.random.default_rng(1).permutation(numpy.flatnonzero(height > 0.05))[:count]:
+        middle = corners[t].mean(axis=0)
+        # Not where a face lies nearer to the plane than the page's points are exact.
+        if len({model.locator.FindCell(middle + side * aside) for side in (-1, 0, 1)}) == 1:
+            differences += [abs(model.density(x, middle) - value) for x, value in zip(corners[t], values[t])]
+    return numpy.array(differences)
+
+
+class Beads(unittest.TestCase):
+    """A build of the bone with beads in each orientation; its page is looked at once."""
+
+    seen = {}  # by orientation
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        for name in phantom.ORIENTATIONS:
+            place = pathlib.Path(cls.folder.name, name)
+            place.mkdir()
+            affine, size = phantom.write(name, place / "ct.nii.gz", place / "l.nii.gz")
+            must("build", place / "ct.nii.gz", "--labels", place / "l.nii.gz", "--tetrahedra", 4000, "--levels", 0.4, "--degree", 3,
+                 "-q", "-o", place / "m")
+            index = numpy.linalg.inv(affine)
+            wanted = [float((index[:3, :3] @ bead + index[:3, 3])[2]) for bead in phantom.BEADS.values()]
+            first = list(phantom.BEADS.values())[0]
+            cuts = [{"level": 0, "orientation": plane, "position": float(first[axis]), "view": view}
+                    for plane, (axis, view) in PLANES.items()]
+            if name == "oblique":
+                cuts += [{"level": 1, "orientation": plane, "position": float(first[axis])} for plane, (axis, _) in PLANES.items()]
+            points = {bead: x.tolist() for bead, x in phantom.BEADS.items()}
+            cls.seen[name] = {"place": place, "affine": affine, "size": size,
+                              **look(place / "m" / "report.html", points=points, slices=wanted, cuts=cuts)}
+
+    def test_pages_are_rendered_and_ask_for_nothing(self):
+        for seen in self.seen.values():
+            self.assertEqual((seen["title"], seen["log"]), ("BoneTK report: ct.nii.gz \u2013 rendered", []))
+
+    def test_slices_titles_name_the_slice_of_the_file_and_its_place(self):
+        for seen in self.seen.values():
+            affine = seen["affine"]
+            for k, bead in zip(seen["slices"], phantom.BEADS.values()):
+                normal = affine[:3, 2] / numpy.linalg.norm(affine[:3, 2])
+                height = float(normal @ (affine @ [0, 0, k["number"], 1])[:3])
+                self.assertTrue(0 <= k["number"] < seen["size"][2])
+                self.assertLess(abs(normal @ bead - height), phantom.BEAD - 1)
+                axis = numpy.abs(normal).argmax()
+                if abs(normal[axis]) > 0.999:
+                    said = re.fullmatch(r"CT slice \d+, ([xyz]) = (\S+) mm", k["title"].replace("\u2212", "-"))
+                    self.assertEqual(said[1], "xyz"[axis])
+                    self.assertAlmostEqual(float(said[2]), height * normal[axis], delta=0.051)
+                    continue
+                said = re.fullmatch(r"CT slice \d+, (\S+) mm along \((\S+), (\S+), (\S+)\)", k["title"].replace("\u2212", "-"))
+                value, *along = map(float, said.groups())
+                self.assertLess(abs(abs(numpy.dot(along, normal)) - 1), 0.01)
+                self.assertAlmostEqual(value, height * numpy.sign(numpy.dot(along, normal)), delta=0.06)
+
+    def test_slices_show_each_bead_where_the_letters_say(self):
+        square = phantom.POSE @ numpy.diag(phantom.AXES ** 2) @ phantom.POSE.T
+        for seen in self.seen.values():
+            affine = seen["affine"]
+            normal = affine[:3, 2] / numpy.linalg.norm(affine[:3, 2])
+            world, shown = [], []
+            for k, bead in zip(seen["slices"], phantom.BEADS.values()):
+                grey = picture(k)[..., 0]
+                mm = seen["millimetres"] / k["columns"]
+                bone = grey > 20
+                spot = eroded(bone, int(5.5 / mm)) & (grey > 160)
+                shown.append(mm * (centre_of(spot) - centre_of(bone)))
+                height = normal @ (affine @ [0, 0, k["number"], 1])[:3] - normal @ phantom.CENTRE
+                middle = phantom.CENTRE + square @ normal * height / (normal @ square @ normal)
+                offset = bead - middle
+                world.append(offset - (offset @ normal) * normal)
+            # Three beads say which directions of the plane run to the right and down.
+            fit, *_ = numpy.linalg.lstsq(numpy.vstack([world, 100 * normal]), numpy.vstack([shown, [0, 0]]), rcond=None)
+            error = numpy.abs(numpy.array(world) @ fit - shown).max()
+            self.assertLess(error, 0.6, f"mm: {world} is shown at {shown}")
+            right, down = fit.T
+            self.assertLess(numpy.abs(fit.T @ fit - numpy.eye(2)).max(), 0.1, "neither stretched nor sheared")
+            for side, direction in (("right", right), ("left", -right), ("bottom", down), ("top", -down)):
+                letters = seen["letters"][side]
+                self.assertEqual(numpy.abs(direction).argmax(), numpy.abs(LETTERS[letters[0]]).argmax(), f"{side} {letters}")
+                for letter in letters:
+                    self.assertGreater(direction @ LETTERS[letter], 0.15, f"{side} is said to be {letters}, and is {direction}")
+
+    def test_views_show_each_bead_on_its_side(self):
+        for seen in self.seen.values():
+            for view, letters in VIEWS.items():
+                places = {bead: numpy.array(place) for bead, place in seen["views"][view].items()}
+                for a in phantom.BEADS:
+                    for b in phantom.BEADS:
+                        offset = phantom.BEADS[a] - phantom.BEADS[b]
+                        rightward, downward = places[a] - places[b]
+                        self.assertEqual(numpy.sign(round(rightward, 3)), numpy.sign(offset @ LETTERS[letters[0]]), view)
+                        self.assertEqual(numpy.sign(round(-downward, 3)), numpy.sign(offset @ LETTERS[letters[1]]), view)
+
+    def test_cuts_are_densest_at_the_bead_and_show_it_on_its_side(self):
+        bead = phantom.BEADS["left anterior superior"]
+        for seen in self.seen.values():
+            for (plane, (axis, view)), cut in zip(PLANES.items(), seen["cuts"]):
+                points, densities = numbers(cut["points"]).reshape(-1, 3), numbers(cut["densities"])
+                self.assertLess(numpy.abs(points[:, axis] - bead[axis]).max(), 0.3)
+                densest = points[densities > 0.8 * densities.max()].mean(axis=0)
+                self.assertLess(numpy.linalg.norm(densest - bead), 5, f"{plane}: {densest}, not {bead}")
+                pixels = picture(cut["picture"])[:, :, :3]
+                background = pixels[3, 3]
+                bone = numpy.abs(pixels - background).max(axis=2) > 12
+                bone[-110:, -110:] = False  # the cube that shows the directions
+                spot = eroded(bone, 55) & (numpy.abs(pixels - YELLOW).max(axis=2) < 30)
+                rightward, downward = centre_of(spot) - centre_of(bone)
+                offset = bead - phantom.CENTRE
+                self.assertGreater(rightward * (offset @ LETTERS[VIEWS[view][0]]), 0, f"{plane} seen from {view}")
+                self.assertLess(downward * (offset @ LETTERS[VIEWS[view][1]]), 0, f"{plane} seen from {view}")
+
+    def test_the_cut_has_the_models_density(self):
+        seen = self.seen["oblique"]
+        models = [Model(seen["place"] / "m" / f"model_L{level}.vtu") for level in (1, 2)]
+        print(f"\n{'plane':9}{'level':>6}{'points':>7}  mean, largest difference (HU)")
+        for k, cut in enumerate(seen["cuts"]):
+            model, plane = models[k // 3], list(PLANES)[k % 3]
+            self.assertEqual(cut["cells"], len(model.cells))
+            differences = cut_differences(model, cut, PLANES[plane][0])
+            print(f"{plane:9}{k // 3 + 1:6}{len(differences):7}  {differences.mean():.2f}, {differences.max():.1f}")
+            self.assertGreater(len(differences), 900)
+            self.assertLess(differences.mean(), 1.0)
+
+    def test_the_models_density_is_that_of_bonetk(self):
+        place = self.seen["oblique"]["place"]
+        for level in (1, 2):
+            ends = [phantom.CENTRE + [-15, 5, -12], phantom.CENTRE + [14, -8, 16]]
+            must("profile", place / "m" / f"model_L{level}.vtu", "--from", *ends[0], "--to", *ends[1], "--points", 101, "-o",
+                 place / "p.csv", "-q")
+            rows = numpy.genfromtxt(place / "p.csv", delimiter=",", names=True)
+            model = Model(place / "m" / f"model_L{level}.vtu")
+            own = numpy.array([model.density(numpy.array([row["x"], row["y"], row["z"]])) for row in rows])
+            self.assertLess(numpy.median(numpy.abs(own - rows["density"])), 1e-3)
+            self.assertGreater((numpy.abs(own - rows["density"]) < 0.01).mean(), 0.97)
+
+    def test_radiographs_show_each_bead_where_the_geometry_projects_it(self):
+        for seen in self.seen.values():
+            folder = seen["place"] / "m"
+            geometry = read_json(folder / "drr_geometry.json")
+            reader = vtkMetaImageReader()
+            reader.SetFileName(str(folder / "drr_L1.mha"))
+            reader.Update()
+            columns, rows, _ = reader.GetOutput().GetDimensions()
+            image = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(rows, columns)
+            self.assertEqual([columns, rows], geometry["size"])
+            source, origin, u, v = (numpy.array(geometry[key]) for key in ("source", "detectorOrigin", "detectorU", "detectorV"))
+            for letters, direction in zip("LI", (u, v)):  # as one faces the patient
+                self.assertGreater(direction @ LETTERS[letters], 0.9)
+            beam = numpy.cross(u, v)
+            for name, bead in phantom.BEADS.items():
+                hit = source + (bead - source) * (beam @ (origin - source)) / (beam @ (bead - source))
+                expected = numpy.array([u @ (hit - origin), v @ (hit - origin)]) / geometry["spacing"]
+                found = self.peak(image, expected, 14 / geometry["spacing"][0])
+                error = numpy.linalg.norm(found - expected) * geometry["spacing"][0]
+                self.assertLess(error, 4.0, f"{name}: {found}, not {expected}")
+
+    @staticmethod
+    def peak(image, expected, reach):
+        """Column and row of the middle of what is brighter than the surroundings within `reach` pixels of a place."""
+        rows, columns = numpy.mgrid[:image.shape[0], :image.shape[1]]
+        distance = numpy.hypot(columns - expected[0], rows - expected[1])
+        ring, inside = (distance < reach) & (distance > 0.75 * reach), distance < reach
+        terms = lambda mask: numpy.stack([numpy.ones(mask.sum()), columns[mask], rows[mask]], axis=1)
+        plane, *_ = numpy.linalg.lstsq(terms(ring), image[ring], rcond=None)
+        excess = numpy.zeros(image.shape)
+        excess[inside] = image[inside] - terms(inside) @ plane
+        return centre_of(excess > 0.6 * excess.max())
+
+
+class Commands(unittest.TestCase):
+    """Pages of the other commands open."""
+
+    @classmethod
+    def setUpClass(cls):
+        """A small model in the folder of each test."""
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.place = pathlib.Path(folder.name)
+        phantom.write("RAS", cls.place / "ct.nii.gz", cls.place / "l.nii.gz")
+        must("build", cls.place / "ct.nii.gz", "--labels", cls.place / "l.nii.gz", "--tetrahedra", 2000, "--levels", 0.8, "--degree",
+             1, "-q", "--no-page", "-o", cls.place / "m")
+        cls.model = cls.place / "m" / "model_L1.vtu"
+
+    def opened(self, page, **request):
+        seen = look(self.place / page, **request)
+        self.assertRegex(seen["title"], "^BoneTK report: .+ \u2013 rendered$")
+        self.assertEqual(seen["log"], [])
+        return seen
+
+    def subject(self, path, longer, denser):
+        """A model as the one at hand, longer and denser."""
+        grid = Model(self.model).grid
+        points = vtk_to_numpy(grid.GetPoints().GetData())
+        points[:, 2] *= longer
+        coefficients = vtk_to_numpy(grid.GetCellData().GetArray("DensityCoefficients"))
+        coefficients *= denser
+        grid.GetCellData().RemoveArray("MeanDensity")
+        grid.GetPointData().RemoveArray("Density")
+        writer = vtkXMLUnstructuredGridWriter()
+        writer.SetFileName(str(path))
+        writer.SetInputData(grid)
+        writer.Write()
+
+    def test_no_page_where_none_is_asked_for(self):
+        self.assertFalse((self.place / "m" / "report.html").exists())
+
+    def test_train(self):
+        names = [f"s{i}.vtu" for i in range(4)]
+        for name, longer, denser in zip(names, (0.9, 1.0, 1.04, 1.12), (1.0, 0.8, 1.3, 1.1)):
+            self.subject(self.place / name, longer, denser)
+        (self.place / "list.txt").write_text("\n".join(names) + "\n")
+        must("train", self.place / "list.txt", "-q", "-o", self.place / "atlas.h5")
+        for mode in ("shape", "density"):
+            canvases = ["#view3d canvas", ".radiograph canvas"]
+            seen = self.opened("atlas.html", change={"control": f"#mode-{mode}-1", "value": 2.5, "canvases": canvases})
+            for canvas, before, after in zip(canvases, seen["before"], seen["after"]):
+                before, after = picture(before), picture(after)
+                self.assertEqual(before.shape, after.shape)
+                self.assertGreater((before != after).any(axis=2).mean(), 0.005, f"{mode}: {canvas} stays as it is")
+
+    def test_register(self):
+        geometry = self.place / "m" / "drr_geometry.json"
+        must("drr", self.model, "--geometry", geometry, "--attenuation", "-q", "-o", self.place / "x.mha")
+        bonetk("register", "rigid", self.model, "--xray", self.place / "x.mha", "--geometry", geometry, "--pixels", 96, "-q", "-o",
+               self.place / "pose")
+        self.opened("pose.html")
+
+    def test_measure(self):
+        must("measure", self.model, "-q", "-o", self.place / "measures.json")
+        self.opened("measures.html")
+
+    def test_export(self):
+        must("export", self.model, "--format", "calculix", "--law", "keyak1998", "--line", 0.02, 0.0008, "-q", "-o",
+             self.place / "solid.inp")
+        self.opened("solid.html")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])
