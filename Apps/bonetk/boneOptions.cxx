@@ -54,16 +54,6 @@ ToDecimal(std::string & text)
   return "";
 }
 
-/** Whether an option says where to write. */
-bool
-IsOutput(const CLI::Option & option)
-{
-  static const std::regex output("output|write-.*|save-.*|report|registered");
-  const auto &            names = option.get_lnames();
-  return std::any_of(
-    names.begin(), names.end(), [](const std::string & name) { return std::regex_match(name, output); });
-}
-
 std::string
 CheckDecimal(std::string & text)
 {
@@ -91,6 +81,15 @@ ReadDecimalNumbers(CLI::App & app)
       }
     }
   }
+}
+
+bool
+IsOutput(const CLI::Option & option)
+{
+  static const std::regex output("output|write-.*|save-.*|report|registered");
+  const auto &            names = option.get_lnames();
+  return std::any_of(
+    names.begin(), names.end(), [](const std::string & name) { return std::regex_match(name, output); });
 }
 
 std::vector<std::string>

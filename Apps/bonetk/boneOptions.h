@@ -32,6 +32,10 @@ Between(double lower, double upper);
 void
 ReadDecimalNumbers(CLI::App & app);
 
+/** Whether an option says where to write: a file, a folder, or the beginning of names. */
+bool
+IsOutput(const CLI::Option & option);
+
 /** The files and folders that a parsed command reads: what its options name that is there, but for those that say where
  * to write. */
 std::vector<std::string>

@@ -90,16 +90,21 @@ WidthOf(int terminal)
 }
 } // namespace
 
-Session::Session()
-  : m_Start(Progress::Clock::now())
-  , m_Output(Duplicate(STDOUT_FILENO))
-  , m_Error(Duplicate(STDERR_FILENO))
-  , m_Terminal(isatty(STDERR_FILENO) == 1)
+Session::Session(SessionStreams streams)
+  : m_Captured(streams == SessionStreams::Captured)
+  , m_Start(Progress::Clock::now())
+  , m_Output(m_Captured ? STDOUT_FILENO : Duplicate(STDOUT_FILENO))
+  , m_Error(m_Captured ? STDERR_FILENO : Duplicate(STDERR_FILENO))
+  , m_Terminal(!m_Captured && isatty(STDERR_FILENO) == 1)
+  , m_Window(itk::OutputWindow::GetInstance())
 {
-  const int nowhere = open("/dev/null", O_WRONLY);
-  dup2(nowhere, STDOUT_FILENO);
-  dup2(nowhere, STDERR_FILENO);
-  close(nowhere);
+  if (!m_Captured)
+  {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+  }
   auto window = SessionWindow::New();
   window->SetSession(this);
   itk::OutputWindow::SetInstance(window);
@@ -108,11 +113,14 @@ Session::Session()
 Session::~Session()
 {
   this->End(m_Exit);
-  itk::OutputWindow::SetInstance(nullptr);
-  dup2(m_Output, STDOUT_FILENO);
-  dup2(m_Error, STDERR_FILENO);
-  close(m_Output);
-  close(m_Error);
+  itk::OutputWindow::SetInstance(m_Window);
+  if (!m_Captured)
+  {
+    dup2(m_Output, STDOUT_FILENO);
+    dup2(m_Error, STDERR_FILENO);
+    close(m_Output);
+    close(m_Error);
+  }
 }
 
 void
@@ -131,6 +139,19 @@ Session::PrintAlways(const std::string & text)
   {
     const std::lock_guard<std::mutex> lock(m_ErrorMutex);
     this->ClearProgress();
+    this->WriteOutput(text);
+  }
+}
+
+void
+Session::WriteOutput(const std::string & text)
+{
+  if (m_Captured)
+  {
+    m_Printed += text;
+  }
+  else
+  {
     m_PrintError = WriteAll(m_Output, text);
   }
 }
@@ -138,7 +159,14 @@ Session::PrintAlways(const std::string & text)
 void
 Session::WriteError(const std::string & text)
 {
-  WriteAll(m_Error, text); // there is nobody to tell that it fails
+  if (m_Captured)
+  {
+    m_Messages += text;
+  }
+  else
+  {
+    WriteAll(m_Error, text); // there is nobody to tell that it fails
+  }
 }
 
 void
@@ -329,23 +357,33 @@ Session::Expect(const std::vector<ExpectedStage> & stages, double from, double t
 void
 Session::Watch(itk::ProcessObject * filter, const std::string & name)
 {
-  if (!verbose && !m_Ticker.joinable())
+  if (!verbose && !m_Captured && !m_Ticker.joinable())
   {
     return;
   }
   const auto run = std::make_shared<int>(-1);
-  filter->AddObserver(itk::StartEvent(), [this, run, name](const itk::EventObject &) {
+  filter->AddObserver(itk::StartEvent(), [this, run, filter, name](const itk::EventObject &) {
     {
       const std::lock_guard<std::timed_mutex> lock(m_Mutex);
       m_Progress.GiveUp(*run); // where the last run failed
+      m_Running.erase(*run);
     }
     *run = this->BeginRun(name);
+    const std::lock_guard<std::timed_mutex> lock(m_Mutex);
+    m_Running[*run] = filter;
   });
   filter->AddObserver(itk::ProgressEvent(), [this, run, filter](const itk::EventObject &) {
+    this->ThrowIfStopped();
     const std::lock_guard<std::timed_mutex> lock(m_Mutex);
     m_Progress.Report(*run, filter->GetProgress());
   });
-  filter->AddObserver(itk::EndEvent(), [this, run](const itk::EventObject &) { this->EndRun(*run); });
+  filter->AddObserver(itk::EndEvent(), [this, run](const itk::EventObject &) {
+    {
+      const std::lock_guard<std::timed_mutex> lock(m_Mutex);
+      m_Running.erase(*run);
+    }
+    this->EndRun(*run);
+  });
 }
 
 Session::Stage::Stage(Session & session, const std::string & name)
@@ -365,6 +403,7 @@ Session::Stage::~Stage()
 int
 Session::BeginRun(const std::string & name)
 {
+  this->ThrowIfStopped();
   const std::lock_guard<std::timed_mutex> lock(m_Mutex);
   m_Subject = subject;
   return m_Progress.Begin(name);

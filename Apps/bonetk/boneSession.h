@@ -7,12 +7,14 @@
 #include "boneProgress.h"
 #include "boneStatusFile.h"
 
+#include <itkOutputWindow.h>
 #include <itkProcessObject.h>
 #include <nlohmann/json.hpp>
 
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,13 +23,22 @@
 
 namespace bone
 {
+/** Where a session's text goes: to the process's standard streams, which are then its own, or into strings, which
+ * leaves the process as it is. */
+enum class SessionStreams
+{
+  Process,
+  Captured
+};
+
 /** \class Session
  * \brief One run of a command: where its text goes, how far it is, and what it warned of.
  *
  * Results go to standard output, warnings and progress to standard error; with `quiet` there are none of them, only
  * errors and warnings that the result is not what was asked for. Warnings of ITK filters become lines of this session
  * too. What the libraries below ITK print by themselves reaches nobody: while a session lives, only it has the
- * process's standard streams.
+ * process's standard streams. A session whose text is captured is for programs that call a command as a function: it
+ * touches no stream, and another thread may ask how far it is and stop it.
  *
  * Progress is known by stages: filters that are watched, and scopes of BeginStage(). From the first second on a
  * terminal shows stage, share and time left; with `verbose` a line tells how long each stage took; `status` names a
@@ -36,7 +47,7 @@ namespace bone
 class Session
 {
 public:
-  Session();
+  explicit Session(SessionStreams streams = SessionStreams::Process);
   ~Session();
   Session(const Session &) = delete;
   Session &
@@ -53,6 +64,7 @@ public:
   std::string              commandLine; ///< as it was called
   std::string              version;
   std::vector<std::string> inputs;  ///< files that the command line names
+  std::vector<std::string> outputs; ///< files and folders that were written, as the user named them; at the end
   std::string              subject; ///< of several that the command works on; warnings and errors name it
 
   /** To be called before the work: opens the status file and writes its first line. Throws UsageError where it cannot
@@ -103,6 +115,42 @@ public:
   GetWarnings() const
   {
     return m_Warnings;
+  }
+
+  /** \name For the thread that calls a command whose text is captured. Any thread may call them at any time.
+   * \{ */
+  /** What was printed for standard output. */
+  std::string
+  GetPrinted() const;
+  /** Lines for standard error: warnings that are shown, seconds of stages, errors. */
+  std::string
+  GetMessages() const;
+  /** All warnings, with their subjects; none is forgotten. */
+  std::vector<std::string>
+  GetAllWarnings() const;
+  /** The last error without "bonetk COMMAND: "; empty where there is none. */
+  std::string
+  GetFailure() const;
+
+  /** How far the command is. */
+  struct Position
+  {
+    std::string stage; ///< "SUBJECT: STAGE", empty before the first and between stages
+    double      share; ///< 0 to 1; never falls
+  };
+  Position
+  GetPosition() const;
+
+  /** The work ends with itk::ProcessAborted, at the latest when the present stage ends; filters that are watched end at
+   * once. To be called again until the work has ended: a filter that just starts forgets that it was asked. */
+  void
+  RequestStop();
+  /** \} */
+
+  bool
+  IsStopRequested() const
+  {
+    return m_StopRequested;
   }
 
   /** Forgets all warnings but the first `count`. */
@@ -157,7 +205,11 @@ private:
     return m_Terminal && !quiet;
   }
   void
+  WriteOutput(const std::string & text);
+  void
   WriteError(const std::string & text);
+  void
+  ThrowIfStopped() const;
   /** A line on standard error, in place of the progress. */
   void
   WriteLine(const std::string & line);
@@ -185,21 +237,27 @@ private:
   std::string
   EndLine(int exitCode) const;
 
+  const bool                  m_Captured;
   Progress::Clock::time_point m_Start;
   int                         m_Output; ///< where standard output went
   int                         m_Error;
   bool                        m_Terminal;
+  itk::OutputWindow::Pointer  m_Window;          ///< ITK's before this session's
   int                         m_PrintError{ 0 }; ///< of errno
 
-  mutable std::timed_mutex m_Mutex; ///< of the work's state; never held while something is written
-  Progress                 m_Progress;
-  std::vector<std::string> m_Warnings;
-  std::vector<std::string> m_AllWarnings; ///< of the status file: with subjects, none forgotten
-  std::string              m_Failure;     ///< the last one
-  std::string              m_Subject;     ///< as the status file tells it
+  mutable std::timed_mutex                   m_Mutex; ///< of the work's state; never held while something is written
+  Progress                                   m_Progress;
+  std::vector<std::string>                   m_Warnings;
+  std::vector<std::string>                   m_AllWarnings; ///< of the status file: with subjects, none forgotten
+  std::string                                m_Failure;     ///< the last one
+  std::string                                m_Subject;     ///< as the status file tells it
+  std::atomic<bool>                          m_StopRequested{ false };
+  std::map<int, itk::ProcessObject::Pointer> m_Running; ///< filters that are watched, by their runs
 
-  std::mutex  m_ErrorMutex; ///< of standard error
-  std::string m_ProgressLine;
+  mutable std::mutex m_ErrorMutex; ///< of standard output and error
+  std::string        m_ProgressLine;
+  std::string        m_Printed;  ///< where captured
+  std::string        m_Messages; ///< the same
 
   std::unique_ptr<StatusFile> m_StatusFile;
   Shown                       m_Told;

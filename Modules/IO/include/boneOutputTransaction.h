@@ -40,6 +40,13 @@ public:
   void
   Commit();
 
+  /** Files and folders that Commit() gave their names, as the user gave these. */
+  const std::vector<std::string> &
+  GetCommitted() const
+  {
+    return m_Committed;
+  }
+
   /** Commits the transaction that lives, where there is one: what follows may fail, and what is done is not lost. */
   static void
   CommitTaken();
@@ -69,6 +76,7 @@ private:
   std::vector<Move>                  m_Moves;
   std::vector<std::string>           m_OutOfDate;
   std::vector<std::shared_ptr<void>> m_Owners;
+  std::vector<std::string>           m_Committed;
 };
 } // namespace bone
 

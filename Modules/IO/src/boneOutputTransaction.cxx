@@ -110,6 +110,10 @@ OutputTransaction::Commit()
   const auto outOfDate = std::exchange(m_OutOfDate, {});
   const auto owners = std::exchange(m_Owners, {});
   MoveAll(moves, outOfDate);
+  for (const Move & move : moves)
+  {
+    m_Committed.push_back(move.path);
+  }
 }
 
 void

@@ -4,6 +4,7 @@
 #include "bindings.h"
 
 #include "boneIOError.h"
+#include "boneSession.h"
 
 #include <itkMultiThreaderBase.h>
 
@@ -21,6 +22,10 @@ Translate(std::exception_ptr pointer)
   try
   {
     std::rethrow_exception(pointer);
+  }
+  catch (const bone::UsageError & error)
+  {
+    PyErr_SetString(module.attr("UsageError").ptr(), error.what());
   }
   catch (const itk::MemoryAllocationError &)
   {
