@@ -175,7 +175,7 @@ class Views(TestCase):
         refuse("--geometry", "g.json", "--view", "ap", says="one way")
         refuse("--geometry", "g.json", "--carm", 0, 0, says="one way")
         refuse("--view", "ap", "--carm", 0, 0, says="one way")
-        refuse("--view", "oblique", says="--view")
+        refuse("--view", "oblique", says="--view: oblique is no view")
         refuse("--carm", 10, says="secondary")
         refuse("--carm", 200, 0, says="-180 to 180")
         refuse("--geometry", "g.json", "--size", 100, says="--size")
@@ -187,7 +187,7 @@ class Views(TestCase):
         refuse("--view", "ap", "--window", 9, 5, says="--window")
         refuse("--view", "ap", "--window", "nan", 5, says="--window")
         refuse("--view", "ap", "--window", 5, says="--window")
-        refuse("--view", "ap", "--bits", 12, says="--bits")
+        refuse("--view", "ap", "--bits", 12, says="--bits: 12 is not 8 or 16")
         for option in (["--bits", 16], ["--window", 0, 1], ["--invert"]):
             refuse("--view", "ap", *option, says=".png", output="o.mha")
         refuse("--geometry", "oblong.json", says="square")

@@ -378,21 +378,40 @@ RunDrr(const DrrOptions & options, Session & session)
   }
 }
 
+/** The number of the preset that has the name. */
+std::string
+ToPreset(std::string & text)
+{
+  static const std::map<std::string, ViewPreset> presets{ { "ap", ViewPreset::AP },
+                                                          { "pa", ViewPreset::PA },
+                                                          { "lateral", ViewPreset::LeftLateral },
+                                                          { "left-lateral", ViewPreset::LeftLateral },
+                                                          { "right-lateral", ViewPreset::RightLateral } };
+  const auto                                     found = presets.find(CLI::detail::to_lower(text));
+  if (found == presets.end())
+  {
+    return text + " is no view: ap, pa, left-lateral (or lateral) and right-lateral are";
+  }
+  text = std::to_string(static_cast<int>(found->second));
+  return "";
+}
+
+std::string
+CheckBits(std::string & text)
+{
+  return text == "8" || text == "16" ? "" : text + " is not 8 or 16";
+}
+
 void
 AddViewOptions(CLI::App * command, DrrOptions & options)
 {
   command->add_option("--geometry", options.geometry, "Views (.json); several write NAME_V1, NAME_V2, ...");
-  const std::map<std::string, ViewPreset> presets{ { "ap", ViewPreset::AP },
-                                                   { "pa", ViewPreset::PA },
-                                                   { "left-lateral", ViewPreset::LeftLateral },
-                                                   { "right-lateral", ViewPreset::RightLateral },
-                                                   { "lateral", ViewPreset::LeftLateral } };
   command
     ->add_option("--view",
                  options.presets,
                  "Views framed around the model, mask or CT: ap, pa, left-lateral (or lateral; detector at the "
                  "patient's left), right-lateral")
-    ->transform(CLI::CheckedTransformer(presets, CLI::ignore_case).description(""))
+    ->transform(CLI::Validator(ToPreset, ""))
     ->type_name("NAME");
   command->add_option("--carm",
                       options.carm,
@@ -413,7 +432,7 @@ void
 AddPictureOptions(CLI::App * command, PictureOptions & picture)
 {
   command->add_option("--bits", picture.bits, "Bits a pixel of a .png, 8 (default) or 16")
-    ->check(CLI::IsMember({ 8, 16 }).description(""));
+    ->check(CLI::Validator(CheckBits, ""));
   command
     ->add_option("--window",
                  picture.window,
