@@ -90,6 +90,35 @@ ScriptJson(const nlohmann::json & json)
   return text;
 }
 
+/** An SVG as an address: a third less than base64, numbers cut to hundredths of a pixel. */
+std::string
+SvgAddress(const std::string & svg)
+{
+  std::string address = "data:image/svg+xml,";
+  int         decimals = -1; // of the present number; -1 before its point
+  for (const char c : svg)
+  {
+    const bool digit = c >= '0' && c <= '9';
+    decimals = c == '.' ? 0 : digit && decimals >= 0 ? decimals + 1 : -1;
+    if (decimals > 2)
+    {
+      continue;
+    }
+    if (std::string("%#<>\"&").find(c) != std::string::npos)
+    {
+      constexpr char digits[] = "0123456789ABCDEF";
+      address += '%';
+      address += digits[c / 16];
+      address += digits[c % 16];
+    }
+    else
+    {
+      address += c == '\n' ? ' ' : c;
+    }
+  }
+  return address;
+}
+
 std::string
 Seconds(double seconds)
 {
@@ -139,11 +168,11 @@ ReportPage::AddTable(const PageTable & table)
 void
 ReportPage::AddPicture(const std::string & bytes, const std::string & description, const std::string & caption)
 {
-  const char * type = bytes.compare(0, 4, "\x89PNG") == 0    ? "png"
-                      : bytes.compare(0, 2, "\xff\xd8") == 0 ? "jpeg"
-                                                             : "svg+xml";
-  m_Sections.back().body += std::string("<figure><img src=\"data:image/") + type + ";base64," + ToBase64(bytes) +
-                            "\" alt=\"" + Escape(description) + "\">" + Element("figcaption", caption) + "</figure>\n";
+  const std::string address = bytes.compare(0, 4, "\x89PNG") == 0    ? "data:image/png;base64," + ToBase64(bytes)
+                              : bytes.compare(0, 2, "\xff\xd8") == 0 ? "data:image/jpeg;base64," + ToBase64(bytes)
+                                                                     : SvgAddress(bytes);
+  m_Sections.back().body += "<figure><img src=\"" + address + "\" alt=\"" + Escape(description) + "\">" +
+                            Element("figcaption", caption) + "</figure>\n";
 }
 
 void

@@ -308,7 +308,7 @@ TEST(ReportPage, EscapesAndHoldsAllParts)
   page.AddTable({ "caption", { "", "x" }, { { "row", "5 > 4" } } });
   page.AddPicture("\x89PNG....", "a \"bone\"", "the bone");
   page.AddPicture("\xff\xd8....", "joint", "the joint");
-  page.AddPicture("<svg/>", "chart", "the chart");
+  page.AddPicture("<svg a=\"1.2345 10.5\"\n/>", "chart", "the chart");
   const std::string html = page.GetHtml();
   EXPECT_THAT(html, HasSubstr("<title>BoneTK report: a&lt;b&gt; &amp; &quot;c&quot;</title>"));
   EXPECT_THAT(html, HasSubstr("<li>Dice &lt; 0.9</li>"));
@@ -316,7 +316,7 @@ TEST(ReportPage, EscapesAndHoldsAllParts)
   EXPECT_THAT(html, HasSubstr("<th scope=\"row\">row</th><td>5 &gt; 4</td>"));
   EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,"));
   EXPECT_THAT(html, HasSubstr("src=\"data:image/jpeg;base64,"));
-  EXPECT_THAT(html, HasSubstr("src=\"data:image/svg+xml;base64,PHN2Zy8+\" alt=\"chart\""));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/svg+xml,%3Csvg a=%221.23 10.5%22 /%3E\" alt=\"chart\""));
   EXPECT_THAT(html, Not(HasSubstr("bonetk-data"))); // nothing to draw
   EXPECT_LT(html.find("Dice &lt; 0.9"), html.find("<h2>Levels"));
 }

@@ -47,7 +47,7 @@ export class Atlas {
   modesGroup() {
     const rows = this.modes.map((mode) => {
       const { kind, number, share } = mode;
-      const label = `${kind} ${number}, ${(100 * share).toFixed(share < 0.0095 ? 1 : 0)} % of the variance`;
+      const label = `${kind} ${number}, ${(100 * share).toFixed(share < 0.0095 ? 1 : 0)} %`;
       const say = (deviations) => `${deviations > 0 ? '+' : ''}${formatNumber(deviations, 1)} SD`;
       mode.slider = slider(`mode-${kind}-${number}`, label, { min: -3, max: 3, step: 0.1, value: 0, say }, (weight) => {
         this.stop();
@@ -65,7 +65,7 @@ export class Atlas {
       this.animateControl,
       button('Reset', () => this.reset(), { id: 'atlas-reset' })
     );
-    return group('Modes', ...rows, buttons);
+    return group('Modes, with their share of the variance', ...rows, buttons);
   }
 
   reset() {
@@ -190,7 +190,7 @@ export class Atlas {
       image.data[4 * i + 3] = 255;
     });
     context.putImageData(image, 0, 0);
-    const unit = this.data.unit ? `${this.data.unit} mm` : 'mm';
+    const unit = this.data.unit ? `${this.data.unit}\u00b7mm` : 'mm';
     this.barPlace.replaceChildren(
       colourBar({ quantity: 'Line integral', unit, range }, 'linear-gradient(to right, #000, #fff)')
     );

@@ -135,7 +135,7 @@ export class Viewer {
       this.id('colour'),
       'Colour by',
       [
-        ['density', this.description.quantity],
+        ['density', capital(this.description.quantity)],
         ['region', 'Region']
       ],
       (value) => {
@@ -221,7 +221,7 @@ export class Viewer {
       const [counts, closed, points] = await Promise.all(
         [contour.counts, contour.closed, contour.points].map(decodeArray)
       );
-      const name = `${contour.name} contours`;
+      const name = contour.name.endsWith('axis') ? contour.name : `${contour.name} contours`;
       this.scene.addContours(name, parseHexColour(contour.color), points, polylines(counts, closed));
       this.scene.setContoursShown(name, false);
       const { control, row } = checkbox(this.id(`contours-${rows.length + 1}`), capital(name), false, (isShown) =>
@@ -317,7 +317,7 @@ export class Viewer {
   showKey() {
     this.keyPlace.replaceChildren(
       this.isColouredByDensity
-        ? colourBar(this.description)
+        ? colourBar({ ...this.description, quantity: capital(this.description.quantity) })
         : legend(this.regions.map(({ number, name }) => [name, cssColour(number)]))
     );
   }
