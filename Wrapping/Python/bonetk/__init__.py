@@ -1,9 +1,84 @@
 """BoneTK: layered tetrahedral density models of bones from CT.
 
 Points are in mm in the patient's frame LPS; arrays of images are [z, y, x]. ``bonetk.commands`` has the commands of the
-program bonetk, from files to files.
+program bonetk, from files to files; all else works in memory: data (Image, DensityMesh, ...), functions (fit_density, drr,
+...) and the filters that they run (DensityFitFilter, ...).
 """
-from . import commands
-from ._bonetk import DataError, Error, UsageError, get_threads, set_threads, version as __version__
+from . import commands, interop as _interop
+from ._bonetk import (
+    AtlasRegistrationFilter,
+    AtlasVolumeRegistration,
+    AttenuationImageFilter,
+    Contour,
+    ContourResampleFilter,
+    ContourSliceFilter,
+    ContourStack,
+    ContourTilingMeshSource,
+    DRRAdjointFilter,
+    DRRDerivativeImageFilter,
+    DRRImageFilter,
+    DataError,
+    DeformableRadiographRegistration,
+    DensityCalibrationFilter,
+    DensityFitFilter,
+    DensityHierarchy,
+    DensityImageFilter,
+    DensityMesh,
+    Error,
+    HierarchyLevelFilter,
+    IntensityImageFilter,
+    MedialAxisFilter,
+    MeshQualityFilter,
+    NoiseImageFilter,
+    PhantomImageSource,
+    Projector,
+    RadiographPreprocessFilter,
+    RigidRadiographRegistration,
+    SnakeContourFilter,
+    StatisticalModel,
+    StatisticalModelEstimator,
+    TetraCollapseFilter,
+    TetraSmoothingFilter,
+    TetraSwapFilter,
+    UsageError,
+    VoxelDRRImageFilter,
+    XRayGeometry,
+    get_threads,
+    read_contours,
+    read_geometry,
+    read_hierarchy,
+    read_mesh,
+    read_model,
+    set_threads,
+    version as __version__,
+    write_contours,
+    write_geometry,
+    write_hierarchy,
+    write_mesh,
+    write_model,
+)
+from .functions import (
+    build,
+    calibrate,
+    contours,
+    drr,
+    drr_derivatives,
+    drr_vjp,
+    fit_density,
+    improve,
+    medial_axes,
+    phantom,
+    register_deformable,
+    register_mesh,
+    register_rigid,
+    register_volume,
+    resample,
+    sample,
+    simplify,
+    tile,
+    train,
+)
+from .images import Image, as_image, read_image, write_image
 
-__all__ = ["DataError", "Error", "UsageError", "__version__", "commands", "get_threads", "set_threads"]
+__all__ = [name for name in dir() if not name.startswith("_") and name not in ("functions", "images", "interop")]
+__all__ += ["__version__"]
