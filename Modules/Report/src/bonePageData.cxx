@@ -259,7 +259,7 @@ Gzip(const std::string & bytes)
 {
   constexpr int gzip = 15 + 16; // the largest window, in gzip's format
   z_stream      stream{};
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip, 9, Z_FILTERED) != Z_OK)
   {
     throw std::runtime_error("zlib cannot begin to compress");
   }
