@@ -91,7 +91,7 @@ def main():
             "largest"]
     failed = [text for _, texts in measured for text in texts]
     REPORT.write_text(PAGE.format(commit=commit, machine=machine(), table=table(head, [row for row, _ in measured])))
-    sys.exit("\n".join(failed))
+    sys.exit("\n".join(failed) or 0)
 
 
 PAGE = """# Pages
@@ -101,7 +101,7 @@ on. Pages are those of `bonetk build` with its defaults: three levels, all conto
 
 {table}
 First frame: from the start of loading the page to its first picture, median of five (limit 3 s). Cut: axial, coronal and sagittal
-through the middle of level 1, each cell's polygon divided by four, from the slider to the picture's data; median. Cut to density:
+through the middle of level 1, each cell's polygon divided by four: polygons, density and colours; median. Cut to density:
 the density at vertices of the cuts of levels 1 and 2 on three planes, beside the model's files by the definition of their
 polynomials (limit of the mean 1 HU); it comes of the page's coefficients, which are rounded to a 500th of their range.
 """
