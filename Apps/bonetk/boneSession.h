@@ -64,7 +64,7 @@ public:
   std::string              commandLine; ///< as it was called
   std::string              version;
   std::vector<std::string> inputs;  ///< files that the command line names
-  std::vector<std::string> outputs; ///< files and folders that were written, as the user named them; at the end
+  std::vector<std::string> outputs; ///< files and folders that were written, see OutputTransaction::GetCommitted()
   std::string              subject; ///< of several that the command works on; warnings and errors name it
 
   /** To be called before the work: opens the status file and writes its first line. Throws UsageError where it cannot

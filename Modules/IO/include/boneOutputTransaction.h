@@ -40,7 +40,7 @@ public:
   void
   Commit();
 
-  /** Files and folders that Commit() gave their names, as the user gave these. */
+  /** Files and folders that Commit() gave their names, as the user gave these; those of folders are absolute. */
   const std::vector<std::string> &
   GetCommitted() const
   {

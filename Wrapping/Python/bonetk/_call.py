@@ -24,7 +24,7 @@ class Result:
     command: the command line of the program bonetk that does the same
     text: what it printed
     warnings: one line each
-    outputs: files and folders that it wrote, as they were named
+    outputs: files that it wrote, as they were named; folders, and files in them, by their whole path
     messages: what the program writes to its standard error: warnings and, with ``verbose``, the seconds of stages
     """
 
