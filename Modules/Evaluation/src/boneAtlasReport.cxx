@@ -179,11 +179,19 @@ MakeAtlasPage(const StatisticalModel & model, const AtlasReport & report, const 
   const Vector3 margin = 0.1 * (upper - lower); // for the modes
   page.AddAtlas(
     PackAtlas(model, modes, XRayGeometry::Framing(lower - margin, upper + margin, beam, up, 900.0, 1100.0, pixels)));
+  const bool hasShape = content.shape.GetNumberOfModes() > 0, hasDensity = content.density.GetNumberOfModes() > 0;
   page.BeginSection("modes", "Modes");
-  page.AddPicture(ToJpeg(DrawShapeModes(model, 3, beam, up).GetImage()),
-                  "Surfaces at -3, 0 and +3 standard deviations of the first modes of shape",
-                  "The first modes of shape at -3, 0 and +3 standard deviations, from in front");
-  if (model.HasDensity())
+  if (!hasShape && !hasDensity)
+  {
+    page.AddText("There are none: the subjects are alike.");
+  }
+  if (hasShape)
+  {
+    page.AddPicture(ToJpeg(DrawShapeModes(model, 3, beam, up).GetImage()),
+                    "Surfaces at -3, 0 and +3 standard deviations of the first modes of shape",
+                    "The first modes of shape at -3, 0 and +3 standard deviations, from in front");
+  }
+  if (model.HasDensity() && (hasShape || hasDensity))
   {
     page.AddPicture(ToJpeg(DrawRadiographModes(model, beam, up).GetImage()),
                     "Radiographs at -3, 0 and +3 standard deviations of the first modes of shape and density",

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace bone
 {
@@ -156,6 +157,10 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
 {
   const auto & content = model.GetContent();
   modes = std::min(modes, static_cast<int>(content.shape.GetNumberOfModes()));
+  if (modes < 1)
+  {
+    throw std::invalid_argument("A model without modes of shape has none to draw.");
+  }
   std::vector<IdType>               id;
   TriangleSurface                   surface = ExteriorSurface(content.mean, id);
   std::vector<std::vector<Vector3>> shapes;
@@ -193,27 +198,32 @@ DrawShapeModes(const StatisticalModel & model, int modes, const Vector3 & direct
 Canvas
 DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, const Vector3 & up, bool letters)
 {
-  std::vector<std::pair<std::string, std::vector<MeshArrays>>> kinds(1);
-  kinds[0].first = "shape";
-  for (const double sd : { -3.0, 0.0, 3.0 })
+  const Eigen::VectorXd                                        none;
+  std::vector<std::pair<std::string, std::vector<MeshArrays>>> kinds;
+  if (model.GetContent().shape.GetNumberOfModes() > 0)
   {
-    kinds[0].second.push_back(model.Synthesize(OneMode(0, sd)));
+    kinds.push_back({ "shape", {} });
   }
   if (model.GetContent().density.GetNumberOfModes() > 0)
   {
-    kinds.emplace_back("density", std::vector<MeshArrays>());
+    kinds.push_back({ "density", {} });
+  }
+  if (kinds.empty())
+  {
+    throw std::invalid_argument("A model without modes has none to draw.");
+  }
+  Vector3 lower = model.GetContent().mean.points.front(), upper = lower;
+  for (auto & [kind, meshes] : kinds)
+  {
     for (const double sd : { -3.0, 0.0, 3.0 })
     {
-      kinds[1].second.push_back(model.Synthesize(Eigen::VectorXd(), OneMode(0, sd)));
-    }
-  }
-  Vector3 lower = kinds[0].second[0].points.front(), upper = lower;
-  for (const MeshArrays & mesh : kinds[0].second)
-  {
-    for (const Vector3 & x : mesh.points)
-    {
-      lower = lower.cwiseMin(x);
-      upper = upper.cwiseMax(x);
+      const Eigen::VectorXd mode = OneMode(0, sd);
+      meshes.push_back(kind == "shape" ? model.Synthesize(mode) : model.Synthesize(none, mode));
+      for (const Vector3 & x : meshes.back().points)
+      {
+        lower = lower.cwiseMin(x);
+        upper = upper.cwiseMax(x);
+      }
     }
   }
   auto geometry = XRayGeometry::New();
