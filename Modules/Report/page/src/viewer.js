@@ -175,7 +175,7 @@ export class Viewer {
     this.resolutionSlider = slider(
       this.id('cut-resolution'),
       'Resolution',
-      { min: 1, max: 8, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` },
+      { min: 1, max: 24, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` },
       (n) => {
         this.resolution = n;
         this.updateCut();
