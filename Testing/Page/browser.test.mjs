@@ -176,18 +176,66 @@ test('the cut has the colours of the density where it is projected to, after tur
       assert.ok(error <= 3, `at ${x}, turned by ${turn}: ${colour} is not ${expected}`);
     }
   }
-  const cut = await page.evaluate(() => {
-    const { points, densities, triangles } = window.bonetkPage.cut();
-    return {
-      points: [...points.subarray(0, 3000)],
-      densities: [...densities.subarray(0, 1000)],
-      count: triangles.length
-    };
-  });
-  assert.ok(cut.count > 3000);
-  assert.ok(cut.points.every((value, i) => i % 3 !== 1 || Math.abs(value - 1.5) < 1e-9));
+  const { points } = await page.evaluate(() => ({ points: [...window.bonetkPage.cut().points] }));
+  assert.ok(points.length > 9000);
+  assert.ok(points.every((value, i) => i % 3 !== 1 || Math.abs(value - 1.5) < 1e-9));
   await page.close();
 });
+
+/** The share of a narrow range that a colour of the map stands for, and how far it is from the map. */
+function shareOf(colour) {
+  const steps = 2000;
+  let best = [Infinity, NaN];
+  for (let i = 0; i <= steps; ++i) {
+    const distance = Math.hypot(...densityColour(i / steps).map((channel, c) => channel - colour[c]));
+    best = distance < best[0] ? [distance, i / steps] : best;
+  }
+  return best;
+}
+
+for (const [title, counts, degrees] of [
+  ['of mixed degrees', [7, 7, 8], { 1: 3, 2: 2, 3: 1 }],
+  ['of the highest degree', [7, 7, 8], { 1: 8, 2: 8, 3: 8 }]
+]) {
+  test(`each pixel of a cut has the density of its own place, ${title}`, async () => {
+    const data = { name: 'solid', model: modelData([counts], degrees) };
+    const range = [310, 390];
+    data.model.range = range;
+    const { page, log } = await rendered(data);
+    await set(page, '#cut-orientation', 'coronal', 'change');
+    await set(page, '#cut', 1.5);
+    await page.evaluate(() => window.bonetkPage.lookFrom('anterior'));
+    const picture = await pixels(page, view3d);
+    const places = [];
+    for (let x = -11; x <= 11; x += 0.5) {
+      for (let z = -32; z <= 32; z += 0.5) {
+        places.push([x, 1.5, z]);
+      }
+    }
+    const projected = await page.evaluate((list) => list.map((place) => window.bonetkPage.project(place)), places);
+    const mm = await page.evaluate(() => window.bonetkPage.viewer.scene.millimetresPerPixel());
+    const errors = [];
+    projected.forEach(([across, down], i) => {
+      const pixel = [Math.floor(across), Math.floor(down)];
+      // Where the pixel's middle lies: seen from the front, +x is at the right.
+      const [x, y, z] = places[i];
+      const middle = [x + mm * (pixel[0] + 0.5 - across), y, z - mm * (pixel[1] + 0.5 - down)];
+      const expected = densityOfRegion[2](...middle);
+      const [distance, share] = shareOf(colourAt(picture, pixel));
+      // The other regions' densities are far from this range: their places have the colours of its ends.
+      if (distance < 4 && share > 0.02 && share < 0.98 && expected > range[0] + 1 && expected < range[1] - 1) {
+        errors.push(Math.abs(range[0] + share * (range[1] - range[0]) - expected));
+      }
+    });
+    const mean = errors.reduce((sum, error) => sum + error, 0) / errors.length;
+    const share = errors.filter((error) => error > 1).length / errors.length;
+    assert.ok(errors.length > 1000, `${errors.length} places`);
+    // Densities are stored in steps of 0.25; at regions' edges colours are mixed.
+    assert.ok(mean < 0.3 && share < 0.01, `mean error ${mean} HU, ${100 * share} % above 1 HU`);
+    assert.deepEqual(log, []);
+    await page.close();
+  });
+}
 
 test('the front half is clipped away, whichever side the camera stands', async () => {
   const { page } = await rendered({ name: 'solid', model: modelData() });

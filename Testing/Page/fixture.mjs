@@ -169,9 +169,9 @@ export function boneShape(x, y, z) {
 }
 
 /** The fixture's mesh: points, tetrahedra, regions, degrees, coefficients. */
-export function boneMesh(counts = [12, 12, 16]) {
+export function boneMesh(counts = [12, 12, 16], degrees = densityDegrees) {
   const mesh = layeredBox(counts, boneShape);
-  return { ...mesh, ...fitDensities(mesh, densityOfRegion, densityDegrees) };
+  return { ...mesh, ...fitDensities(mesh, densityOfRegion, degrees) };
 }
 
 /** A mesh as a level of the page's data, its points and coefficients in steps as the page's writer has them. */
@@ -222,16 +222,17 @@ function contoursOf(count) {
   };
 }
 
-/** The page's model; counts: cubes along each edge, by level. */
+/** The page's model; counts: cubes along each edge, by level; degrees: of the density, by region. */
 export function modelData(
   counts = [
     [12, 12, 16],
     [6, 6, 8]
-  ]
+  ],
+  degrees = densityDegrees
 ) {
   return {
     ...description,
-    levels: counts.map((n, i) => levelOf(`level ${i + 1}`, boneMesh(n))),
+    levels: counts.map((n, i) => levelOf(`level ${i + 1}`, boneMesh(n, degrees))),
     contours: [contoursOf(18)],
     landmarks: [
       { name: 'left bump', position: boneShape(1, 0, 0.55) },

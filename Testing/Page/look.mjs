@@ -69,7 +69,7 @@ async function lookAtSlices(numbers) {
   return { slices, millimetres: data.pixel * data.columns };
 }
 
-async function lookAtCut({ level, orientation, position, view, resolution }) {
+async function lookAtCut({ level, orientation, position, view }) {
   const { bonetkPage, look } = window;
   if (bonetkPage.level !== level) {
     const before = bonetkPage.viewer.mesh;
@@ -78,7 +78,6 @@ async function lookAtCut({ level, orientation, position, view, resolution }) {
       await look.frames(2);
     }
   }
-  await look.set('#cut-resolution', resolution ?? 4);
   await look.set('#cut-orientation', orientation);
   await look.set('#cut', position);
   if (view) {
@@ -94,9 +93,9 @@ async function lookAtCut({ level, orientation, position, view, resolution }) {
     milliseconds,
     cells: bonetkPage.viewer.mesh.cellCount,
     points: look.base64(cut.points),
-    densities: look.base64(cut.densities),
+    degree: cut.degree,
+    coefficients: look.base64(cut.coefficients),
     regions: look.base64(cut.regions),
-    triangles: look.base64(cut.triangles),
     picture: view ? look.picture('#view3d canvas') : null
   };
 }

@@ -5,11 +5,12 @@ import { gzipSync } from 'node:zlib';
 import { decodeArray, decodeJson } from '../../Modules/Report/page/src/arrays.js';
 import { combine } from '../../Modules/Report/page/src/modes.js';
 import { coefficientCount, evaluate } from '../../Modules/Report/page/src/bernstein.js';
-import { coloursOfDensities, densityColour } from '../../Modules/Report/page/src/colours.js';
+import { densityColour } from '../../Modules/Report/page/src/colours.js';
 import { planeCut } from '../../Modules/Report/page/src/cut.js';
 import { Mesh } from '../../Modules/Report/page/src/mesh.js';
 import { formatNumber, roundStep, ticks } from '../../Modules/Report/page/src/numbers.js';
 import { coarserView, gaussLegendre, radiograph } from '../../Modules/Report/page/src/radiograph.js';
+import { densityAttributeNames, densityAttributes } from '../../Modules/Report/page/src/shader.js';
 import { regionFaces, regionSurface } from '../../Modules/Report/page/src/surface.js';
 import { boneMesh, densityOfRegion, encodeArray, fitDensities, layeredBox, levelOf } from './fixture.mjs';
 
@@ -35,9 +36,43 @@ function areaVector(points, [a, b, c]) {
   return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]].map((value) => value / 2);
 }
 
-function* trianglesOf({ triangles }) {
-  for (let i = 0; i < triangles.length; i += 3) {
-    yield [triangles[i], triangles[i + 1], triangles[i + 2]];
+function* trianglesOf({ points }) {
+  for (let i = 0; 3 * i < points.length; i += 3) {
+    yield [i, i + 1, i + 2];
+  }
+}
+
+/** The value on a triangle at barycentric coordinates, by de Casteljau's algorithm. */
+function valueOnTriangle(coefficients, degree, [u, v, w]) {
+  let values = [...coefficients];
+  for (let n = degree; n > 0; --n) {
+    const next = [];
+    for (let row = 0, at = 0; row < n; ++row) {
+      for (let column = 0; column <= row; ++column, ++at) {
+        next.push(u * values[at] + v * values[at + row + 1] + w * values[at + row + 2]);
+      }
+    }
+    values = next;
+  }
+  return values[0];
+}
+
+/** Places in the triangles of a surface or cut, with the density there. */
+function* samplesOf({ points, degree, coefficients }) {
+  const stride = ((degree + 1) * (degree + 2)) / 2;
+  for (let triangle = 0; 9 * triangle < points.length; ++triangle) {
+    for (const weights of [
+      [1, 0, 0],
+      [0, 1, 0],
+      [0, 0, 1],
+      [0.2, 0.5, 0.3],
+      [0.7, 0.1, 0.2]
+    ]) {
+      const x = [0, 1, 2].map((axis) =>
+        weights.reduce((sum, weight, corner) => sum + weight * points[9 * triangle + 3 * corner + axis], 0)
+      );
+      yield [x, valueOnTriangle(coefficients.subarray(stride * triangle, stride * (triangle + 1)), degree, weights)];
+    }
   }
 }
 
@@ -127,7 +162,7 @@ test('a mesh of mixed degrees has in each cell the density of its region', () =>
       b.reduce((total, weight, v) => total + (weight / sum) * mesh.points[3 * mesh.tetrahedra[4 * cell + v] + i], 0)
     );
     near(
-      mesh.density(cell, ...b.map((value) => value / sum)),
+      evaluate(mesh.coefficientsOf(cell), 0, mesh.degrees[cell], ...b.map((value) => value / sum)),
       densityOfRegion[mesh.regions[cell]](...x),
       1e-9,
       `cell ${cell}`
@@ -165,28 +200,22 @@ test('neighbours are mutual and the outer faces of a box are those of its cubes'
 test("a region's surface is closed, points outward and has the cells' densities", () => {
   const mesh = new Mesh(boneMesh([6, 6, 8]));
   for (const region of [1, 2, 3]) {
-    for (const divisions of [1, 3]) {
-      const surface = regionSurface(mesh, region, divisions);
-      let volume = 0;
-      const sum = [0, 0, 0];
-      for (const triangle of trianglesOf(surface)) {
-        const vector = areaVector(surface.points, triangle);
-        const corner = point(surface.points, triangle[0]);
-        volume += (vector[0] * corner[0] + vector[1] * corner[1] + vector[2] * corner[2]) / 3;
-        vector.forEach((value, i) => {
-          sum[i] += value;
-        });
-      }
-      near(Math.hypot(...sum), 0, 1e-3, 'sum of the area vectors');
-      near(volume, volumeOf(mesh, region), 1e-4 * volume, `volume of region ${region}`);
-      surface.densities.forEach((density, v) =>
-        near(
-          density,
-          densityOfRegion[region](...point(surface.points, v)),
-          2e-3,
-          `density at vertex ${v} of region ${region}`
-        )
-      );
+    const surface = regionSurface(mesh, region);
+    let volume = 0;
+    const sum = [0, 0, 0];
+    for (const triangle of trianglesOf(surface)) {
+      const vector = areaVector(surface.points, triangle);
+      const corner = point(surface.points, triangle[0]);
+      volume += (vector[0] * corner[0] + vector[1] * corner[1] + vector[2] * corner[2]) / 3;
+      vector.forEach((value, i) => {
+        sum[i] += value;
+      });
+    }
+    near(Math.hypot(...sum), 0, 1e-3, 'sum of the area vectors');
+    near(volume, volumeOf(mesh, region), 1e-4 * volume, `volume of region ${region}`);
+    assert.equal(surface.degree, 3);
+    for (const [x, density] of samplesOf(surface)) {
+      near(density, densityOfRegion[region](...x), 2e-3, `density of region ${region} at ${x}`);
     }
   }
   assert.equal(regionFaces(mesh, 4).length, 0);
@@ -209,8 +238,7 @@ function volumeOf(mesh, region) {
 test("a surface's normals are unit vectors along the faces", () => {
   const surface = regionSurface(
     boxMesh([2, 2, 2], 0, () => 1),
-    1,
-    2
+    1
   );
   for (const triangle of trianglesOf(surface)) {
     const vector = areaVector(surface.points, triangle);
@@ -221,30 +249,28 @@ test("a surface's normals are unit vectors along the faces", () => {
   }
 });
 
-test("a cut's area is the solid's cross-section at each resolution, through vertices and faces too", () => {
+test("a cut's area is the solid's cross-section, through vertices and faces too", () => {
   const mesh = boxMesh([4, 6, 5]);
   const third = 1 / Math.sqrt(3);
   const cube = new Mesh(layeredBox([3, 3, 3], (x, y, z) => [10 * x, 10 * y, 10 * z]));
-  for (const resolution of [1, 2, 8]) {
-    near(areaOf(planeCut(mesh, [0, 0, 1], 3.3, all, resolution)), 20 * 30, 1e-9, 'axial');
-    near(areaOf(planeCut(mesh, [0, 1, 0], 0, all, resolution)), 20 * 40, 1e-9, 'coronal, through faces');
-    near(areaOf(planeCut(mesh, [1, 0, 0], -5, all, resolution)), 30 * 40, 1e-9, 'sagittal, through faces');
-    // A cube's regular hexagon.
-    near(areaOf(planeCut(cube, [third, third, third], 0, all, resolution)), 0.75 * Math.sqrt(3) * 400, 1e-9, 'hexagon');
-    assert.equal(planeCut(mesh, [0, 0, 1], 20.5, all, resolution).triangles.length, 0);
-  }
+  near(areaOf(planeCut(mesh, [0, 0, 1], 3.3, all)), 20 * 30, 1e-9, 'axial');
+  near(areaOf(planeCut(mesh, [0, 1, 0], 0, all)), 20 * 40, 1e-9, 'coronal, through faces');
+  near(areaOf(planeCut(mesh, [1, 0, 0], -5, all)), 30 * 40, 1e-9, 'sagittal, through faces');
+  // A cube's regular hexagon.
+  near(areaOf(planeCut(cube, [third, third, third], 0, all)), 0.75 * Math.sqrt(3) * 400, 1e-9, 'hexagon');
+  assert.equal(planeCut(mesh, [0, 0, 1], 20.5, all).points.length, 0);
 });
 
 test("a cut's triangles face its normal and its regions add up", () => {
   const mesh = new Mesh(boneMesh([6, 6, 8]));
   const length = Math.hypot(1, 2, -3);
   const normal = [1 / length, 2 / length, -3 / length];
-  const whole = planeCut(mesh, normal, 1.7, all, 2);
+  const whole = planeCut(mesh, normal, 1.7, all);
   for (const triangle of trianglesOf(whole)) {
     const vector = areaVector(whole.points, triangle);
     assert.ok(normal[0] * vector[0] + normal[1] * vector[1] + normal[2] * vector[2] > -1e-12);
   }
-  const parts = [1, 2, 3].map((region) => planeCut(mesh, normal, 1.7, (other) => other === region, 2));
+  const parts = [1, 2, 3].map((region) => planeCut(mesh, normal, 1.7, (other) => other === region));
   parts.forEach((part, i) => assert.deepEqual([...new Set(part.regions)], [i + 1]));
   near(
     parts.reduce((sum, part) => sum + areaOf(part), 0),
@@ -254,24 +280,45 @@ test("a cut's triangles face its normal and its regions add up", () => {
   );
 });
 
-test('a cut has the exact density of a cubic field at each resolution', () => {
+test('a cut has the exact density of a cubic field everywhere', () => {
   const mesh = boxMesh([3, 4, 5]);
   const length = Math.hypot(2, 1, 2);
   const normal = [2 / length, 1 / length, 2 / length];
-  for (const resolution of [1, 3, 8]) {
-    const cut = planeCut(mesh, normal, 2.1, all, resolution);
-    assert.ok(cut.densities.length > 100);
-    cut.densities.forEach((density, v) => {
-      const x = point(cut.points, v);
-      near(density, cubic(...x), 1e-9, `vertex ${v}`);
-      near(normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2], 2.1, 1e-12, `height of vertex ${v}`);
-    });
+  const cut = planeCut(mesh, normal, 2.1, all);
+  let count = 0;
+  for (const [x, density] of samplesOf(cut)) {
+    ++count;
+    near(density, cubic(...x), 1e-9, `density at ${x}`);
+    near(normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2], 2.1, 1e-12, `height of ${x}`);
+  }
+  assert.ok(count > 500);
+});
+
+test('cells of lower degrees have their own densities in a cut beside cells of higher degrees', () => {
+  const mesh = new Mesh(boneMesh([6, 6, 8]));
+  for (const region of [1, 2, 3]) {
+    const cut = planeCut(mesh, [0, 0, 1], 0.7, (other) => other === region);
+    assert.equal(cut.degree, 3);
+    for (const [x, density] of samplesOf(cut)) {
+      near(density, densityOfRegion[region](...x), 1e-8, `density of region ${region} at ${x}`);
+    }
+  }
+});
+
+test('each vertex of a triangle with a density carries its place and the coefficients as shares of the range', () => {
+  const triangle = { degree: 2, coefficients: [100, 110, 120, 130, 140, 150] };
+  const [corner, first, second] = densityAttributes(triangle, [100, 200]);
+  assert.deepEqual([corner.name, first.name, second.name], densityAttributeNames(2));
+  assert.deepEqual([...corner.values], [1, 0, 0, 1, 0, 0]);
+  for (let vertex = 0; vertex < 3; ++vertex) {
+    const carried = [first, second].flatMap(({ values }) => [...values.subarray(4 * vertex, 4 * vertex + 4)]);
+    [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0, 0].forEach((share, i) => near(carried[i], share, 1e-7, `coefficient ${i}`));
   }
 });
 
 test("a cut's outlines are its polygons' edges", () => {
   const mesh = new Mesh({ points: [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1], tetrahedra: [0, 1, 2, 3], regions: [1] });
-  const { outlines } = planeCut(mesh, [0, 0, 1], 0.25, all, 4);
+  const { outlines } = planeCut(mesh, [0, 0, 1], 0.25, all);
   assert.equal(outlines.length, 18);
   let length = 0;
   for (let i = 0; i < outlines.length; i += 6) {
@@ -383,13 +430,12 @@ test('modes add up', () => {
   );
 });
 
-test('colours stand for the range and do not leave it', () => {
-  const colours = coloursOfDensities([-1e9, 0, 500, 1000, 1e9, NaN], [0, 1000]);
-  assert.deepEqual([...colours.subarray(0, 3)], densityColour(0));
-  assert.deepEqual([...colours.subarray(3, 6)], densityColour(0));
-  assert.deepEqual([...colours.subarray(6, 9)], densityColour(128 / 255));
-  assert.deepEqual([...colours.subarray(9, 12)], densityColour(1));
-  assert.deepEqual([...colours.subarray(12, 15)], densityColour(1));
+test('colours stand for shares and do not leave the map', () => {
+  assert.deepEqual(densityColour(0), [68, 1, 84]);
+  assert.deepEqual(densityColour(-1e9), densityColour(0));
+  assert.deepEqual(densityColour(1), [253, 231, 37]);
+  assert.deepEqual(densityColour(1e9), densityColour(1));
+  assert.deepEqual(densityColour(4 / 9), [38, 130, 142]);
 });
 
 test('numbers are round and legible', () => {

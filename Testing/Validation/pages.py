@@ -24,7 +24,7 @@ os.environ["BONETK"] = str(BUILD / "Apps" / "bonetk" / "bonetk")
 os.environ["BONETK_PAGE_MODULES"] = str(BUILD / "Testing" / "Page")
 os.environ.setdefault("BONETK_CHROMIUM", shutil.which("chromium-headless-shell") or shutil.which("chromium") or "")
 sys.path += [str(ROOT / "Testing" / "Page"), str(ROOT / "Testing" / "Validation")]
-from bonetk_test import PLANES, Model, cut_differences, look, must  # noqa: E402
+from bonetk_test import PLANES, cut_differences, look, must, read_grid  # noqa: E402
 from simplification import HIP, bones  # noqa: E402
 
 REPORT = ROOT / "Documentation" / "validation" / "pages.md"
@@ -55,15 +55,17 @@ def measure(bone, folder):
     model = build(bone, folder)
     page = model / "report.html"
     frames = sorted(look(page)["frameTime"] / 1000 for _ in range(RUNS))
-    meshes = [Model(model / f"model_L{level}.vtu") for level in (1, 2)]
-    middle = (meshes[0].points.max(axis=0) + meshes[0].points.min(axis=0)) / 2
+    grid = read_grid(model / "model_L1.vtu")
+    bounds = grid.GetBounds()
+    middle = [(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 for axis in range(3)]
     cuts = [{"level": level, "orientation": plane, "position": float(middle[axis])}
             for level in (0, 1) for plane, (axis, _) in PLANES.items()]
     seen = look(page, cuts=cuts)["cuts"]
     times = [cut["milliseconds"] for cut in seen[:3]]
-    differences = [cut_differences(meshes[k // 3], cut, list(PLANES.values())[k % 3][0]) for k, cut in enumerate(seen)]
+    differences = [cut_differences(model / f"model_L{k // 3 + 1}.vtu", cut, list(PLANES.values())[k % 3][0], folder)[0]
+                   for k, cut in enumerate(seen)]
     every = numpy.concatenate(differences)
-    row = [bone.name, len(meshes[0].cells), f"{page.stat().st_size / 1e6:.2f}", f"{statistics.median(frames):.2f}",
+    row = [bone.name, grid.GetNumberOfCells(), f"{page.stat().st_size / 1e6:.2f}", f"{statistics.median(frames):.2f}",
            f"{frames[0]:.2f} to {frames[-1]:.2f}", f"{statistics.median(times):.0f}", f"{every.mean():.2f}", f"{every.max():.1f}"]
     failed = []
     if statistics.median(frames) > FIRST_FRAME:
@@ -101,9 +103,10 @@ on. Pages are those of `bonetk build` with its defaults: three levels, all conto
 
 {table}
 First frame: from the start of loading the page to its first picture, median of five (limit 3 s). Cut: axial, coronal and sagittal
-through the middle of level 1, each cell's polygon divided by four: polygons, density and colours; median. Cut to density:
-the density at vertices of the cuts of levels 1 and 2 on three planes, beside the model's files by the definition of their
-polynomials (limit of the mean 1 HU); it comes of the page's coefficients, which are rounded to a 500th of their range.
+through the middle of level 1: each cell's polygon and the polynomial on it; median. Each pixel of the screen is then coloured by the
+polynomial's value there. Cut to density: at every 0.2 mm of the cuts of levels 1 and 2 on three planes, beside
+`DensityImageFilter` on the model's files (limit of the mean 1 HU). The difference comes of the page's coefficients, which are
+rounded to a 500th of their range, and of its points, which are rounded to a 65,000th of the bone's length.
 """
 
 

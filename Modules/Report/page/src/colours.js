@@ -1,7 +1,7 @@
 // Colours that readers with any colour vision can tell apart.
 
 // The map "viridis" at even distances, as in BoneTK's pictures.
-const stops = [
+export const densityStops = [
   [68, 1, 84],
   [72, 40, 120],
   [62, 74, 137],
@@ -16,33 +16,16 @@ const stops = [
 
 /** Red, green, blue (0..255) of a share (0..1) of the density's range. */
 export function densityColour(share) {
-  const at = Math.min(1, Math.max(0, share)) * (stops.length - 1);
-  const first = Math.min(Math.floor(at), stops.length - 2);
-  return stops[first].map((channel, i) => Math.round(channel + (at - first) * (stops[first + 1][i] - channel)));
-}
-
-const densityTable = new Uint8Array(3 * 256);
-for (let i = 0; i < 256; ++i) {
-  densityTable.set(densityColour(i / 255), 3 * i);
-}
-
-/** Three bytes for each density; the map's ends stand for the range's. */
-export function coloursOfDensities(densities, [low, high]) {
-  const colours = new Uint8Array(3 * densities.length);
-  const scale = 255 / (high - low);
-  for (let i = 0; i < densities.length; ++i) {
-    const value = (densities[i] - low) * scale;
-    const entry = 3 * (value > 0 ? (value < 255 ? Math.round(value) : 255) : 0);
-    colours[3 * i] = densityTable[entry];
-    colours[3 * i + 1] = densityTable[entry + 1];
-    colours[3 * i + 2] = densityTable[entry + 2];
-  }
-  return colours;
+  const at = Math.min(1, Math.max(0, share)) * (densityStops.length - 1);
+  const first = Math.min(Math.floor(at), densityStops.length - 2);
+  return densityStops[first].map((channel, i) =>
+    Math.round(channel + (at - first) * (densityStops[first + 1][i] - channel))
+  );
 }
 
 /** A CSS gradient of the density's colours from left to right. */
 export function densityGradient() {
-  return `linear-gradient(to right, ${stops.map((colour) => `rgb(${colour.join(' ')})`).join(', ')})`;
+  return `linear-gradient(to right, ${densityStops.map((colour) => `rgb(${colour.join(' ')})`).join(', ')})`;
 }
 
 // Okabe and Ito's colours, in an order that suits bone: cortical, trabecular, cavity, further layers.

@@ -1,5 +1,5 @@
 // The filled cut of a mesh by a plane: the exact polygons in which the plane meets the cells, with their density.
-import { dividedTriangle } from './surface.js';
+import { restrictToTriangle } from './bernstein.js';
 
 /**
  * The barycentric coordinates of the corners of the polygon in which a plane meets a cell, in order, or an empty list.
@@ -68,19 +68,17 @@ function isCounterClockwise(corners, normal) {
 
 /**
  * The cut by the plane normal . x = offset (normal of length 1, offset in mm) through the cells whose region isShown
- * accepts. Each polygon is divided into triangles `resolution` times finer along each edge, and each vertex has its
- * density by the polynomial of the polygon's own cell.
- * Returns points (3 a vertex, mm), densities (1 a vertex; NaN without density), regions (1 a vertex), triangles (3
- * each, counter-clockwise seen from where the normal points to), outlines (pairs of points, 6 numbers each: the
- * polygons' edges).
+ * accepts: the polygons as triangles, each with the polynomial that its cell's density is on it.
+ * Returns points (9 a triangle, mm; counter-clockwise seen from where the normal points to), regions (1 a triangle),
+ * degree and coefficients (of the density on each triangle; null without density), outlines (pairs of points, 6 numbers
+ * each: the polygons' edges).
  */
-export function planeCut(mesh, normal, offset, isShown, resolution) {
+export function planeCut(mesh, normal, offset, isShown) {
   const points = [];
-  const densities = [];
+  const coefficients = [];
   const regions = [];
-  const triangles = [];
   const outlines = [];
-  const divided = dividedTriangle(resolution);
+  const degree = mesh.maximumDegree;
   const { tetrahedra } = mesh;
   const position = (cell, barycentric) =>
     [0, 1, 2].map((i) => {
@@ -92,34 +90,26 @@ export function planeCut(mesh, normal, offset, isShown, resolution) {
     });
   for (const [cell, heights] of crossedCells(mesh, normal, offset, isShown)) {
     const polygon = cellPolygon(heights);
-    let corners = polygon.map((corner) => position(cell, corner));
+    const corners = polygon.map((corner) => position(cell, corner));
     if (!isCounterClockwise(corners, normal)) {
       polygon.reverse();
       corners.reverse();
     }
     corners.forEach((corner, i) => outlines.push(...corner, ...corners[(i + 1) % corners.length]));
     for (let fan = 1; fan + 1 < polygon.length; ++fan) {
-      const [a, b, c] = [0, fan, fan + 1];
-      const begin = densities.length;
-      for (let v = 0; v < divided.coordinates.length; v += 3) {
-        const [wa, wb, wc] = [divided.coordinates[v], divided.coordinates[v + 1], divided.coordinates[v + 2]];
-        for (let i = 0; i < 3; ++i) {
-          points.push(wa * corners[a][i] + wb * corners[b][i] + wc * corners[c][i]);
-        }
-        const at = (vertex) => wa * polygon[a][vertex] + wb * polygon[b][vertex] + wc * polygon[c][vertex];
-        densities.push(mesh.density(cell, at(0), at(1), at(2), at(3)));
-        regions.push(mesh.regions[cell]);
-      }
-      for (const vertex of divided.triangles) {
-        triangles.push(begin + vertex);
+      points.push(...corners[0], ...corners[fan], ...corners[fan + 1]);
+      regions.push(mesh.regions[cell]);
+      if (mesh.hasDensity) {
+        const triangle = [polygon[0], polygon[fan], polygon[fan + 1]];
+        coefficients.push(...restrictToTriangle(mesh.coefficientsOf(cell), mesh.degrees[cell], triangle, degree));
       }
     }
   }
   return {
     points: Float64Array.from(points),
-    densities: Float64Array.from(densities),
     regions: Uint8Array.from(regions),
-    triangles: Uint32Array.from(triangles),
+    degree,
+    coefficients: mesh.hasDensity ? Float64Array.from(coefficients) : null,
     outlines: Float32Array.from(outlines)
   };
 }

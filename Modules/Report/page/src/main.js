@@ -13,7 +13,7 @@ const page = {
   viewer: null,
   slices: null,
   atlas: null,
-  /** The present cut: flat arrays points (mm), densities, triangles; null where there is none. */
+  /** The present cut, as cut.js makes it; null where there is none. */
   cut: () => page.viewer.cut,
   /** Looks from anterior, posterior, left, right, superior or inferior. */
   lookFrom: (name) => page.viewer.lookFrom(name),

@@ -1,6 +1,6 @@
 // A level of the model, made ready for surfaces, cuts and radiographs.
 import { decodeArray } from './arrays.js';
-import { coefficientCount, evaluate } from './bernstein.js';
+import { coefficientCount } from './bernstein.js';
 
 /** Where each cell's coefficients begin, and one entry more: where they end. */
 function coefficientBegins(degrees) {
@@ -73,6 +73,7 @@ export class Mesh {
     this.degrees = degrees;
     this.coefficients = coefficients;
     this.begins = degrees ? coefficientBegins(degrees) : null;
+    this.maximumDegree = degrees ? degrees.reduce((most, degree) => Math.max(most, degree), 0) : 0;
     if (coefficients && this.begins[degrees.length] !== coefficients.length) {
       throw new Error("The page's data is damaged: the cells' degrees and their coefficients disagree.");
     }
@@ -104,11 +105,9 @@ export class Mesh {
     return this.cachedNeighbors;
   }
 
-  /** The density at barycentric coordinates of a cell; NaN where the mesh has none. */
-  density(cell, b0, b1, b2, b3) {
-    return this.coefficients === null
-      ? NaN
-      : evaluate(this.coefficients, this.begins[cell], this.degrees[cell], b0, b1, b2, b3);
+  /** A cell's coefficients, where the mesh has a density. */
+  coefficientsOf(cell) {
+    return this.coefficients.subarray(this.begins[cell], this.begins[cell + 1]);
   }
 
   /** The least and greatest of direction . point over all points. */

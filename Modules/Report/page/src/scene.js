@@ -11,6 +11,7 @@ import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer.js';
 import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow.js';
 import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow.js';
 import { oncePerFrame } from './dom.js';
+import { densityAttributeNames, densityAttributes, densityShader } from './shader.js';
 
 /** Where the camera stands (from the model's centre) and what is up, in LPS. */
 export const viewsByName = {
@@ -33,18 +34,28 @@ function cellArray(points, size) {
   return cells;
 }
 
-/** Triangles with a colour (three bytes) at each vertex and, where given, normals. */
-function trianglesData({ points, normals, triangles }, colours) {
+/** Triangles of three vertices each; with normals at the vertices and colours (three bytes a triangle) where given. */
+function trianglesData({ points, normals }, colours) {
   const data = vtkPolyData.newInstance();
   data.getPoints().setData(Float32Array.from(points), 3);
-  data.getPolys().setData(cellArray(triangles, 3));
-  data.getPointData().setScalars(vtkDataArray.newInstance({ name: 'Colour', values: colours, numberOfComponents: 3 }));
+  data.getPolys().setData(
+    cellArray(
+      Uint32Array.from({ length: points.length / 3 }, (_, i) => i),
+      3
+    )
+  );
   if (normals) {
-    data
-      .getPointData()
-      .setNormals(vtkDataArray.newInstance({ name: 'Normals', values: normals, numberOfComponents: 3 }));
+    addPointData(data, 'setNormals', 'Normals', normals, 3);
+  }
+  if (colours) {
+    const values = Uint8Array.from({ length: points.length }, (_, i) => colours[3 * Math.floor(i / 9) + (i % 3)]);
+    addPointData(data, 'setScalars', 'Colour', values, 3);
   }
   return data;
+}
+
+function addPointData(data, method, name, values, numberOfComponents) {
+  data.getPointData()[method](vtkDataArray.newInstance({ name, values, numberOfComponents }));
 }
 
 /** Separate line segments, or polylines where `lines` holds vtk's cells. */
@@ -65,9 +76,32 @@ const centroidDistances = ['Vertex', 'Fragment'].map((shaderType) => ({
   replaceAll: false
 }));
 
+function setShader(mapper, replacements) {
+  mapper.setViewSpecificProperties({ OpenGL: { ShaderReplacements: [...centroidDistances, ...replacements] } });
+}
+
+/**
+ * Gives a mapper its triangles (points and, where they have a density, degree and coefficients), in the colours of their
+ * density, or in those given (three bytes a triangle).
+ */
+function setTriangles(mapper, triangles, { range, colours }) {
+  const data = trianglesData(triangles, colours);
+  const isByDensity = !colours;
+  if (isByDensity) {
+    for (const { name, values, components } of densityAttributes(triangles, range)) {
+      addPointData(data, 'addArray', name, values, components);
+    }
+  }
+  mapper.setCustomShaderAttributes(isByDensity ? densityAttributeNames(triangles.degree) : []);
+  setShader(mapper, isByDensity ? densityShader(triangles.degree) : []);
+  mapper.setScalarVisibility(!isByDensity);
+  mapper.setColorModeToDirectScalars();
+  mapper.setInputData(data);
+}
+
 function newActor(properties) {
   const mapper = vtkMapper.newInstance();
-  mapper.setViewSpecificProperties({ OpenGL: { ShaderReplacements: centroidDistances } });
+  setShader(mapper, []);
   const actor = vtkActor.newInstance();
   actor.setMapper(mapper);
   actor.getProperty().set({ interpolation: 1, ambient: 0.3, diffuse: 0.7, specular: 0, ...properties });
@@ -261,17 +295,16 @@ export class Scene {
     return [(0.5 + (0.5 * row(0)) / row(3)) * size.width, (0.5 - (0.5 * row(1)) / row(3)) * size.height];
   }
 
-  /** Shows a region's surface, as surface.js makes it, by a colour at each vertex. */
-  setSurface(region, surface, colours) {
+  /** Shows a region's surface, as surface.js makes it. colouring: see setTriangles. */
+  setSurface(region, surface, colouring) {
     if (!this.surfaces.has(region)) {
       // The inner side is never seen through a cut: there the cut's own faces lie.
       const item = newActor({ backfaceCulling: true });
-      item.mapper.setColorModeToDirectScalars();
       this.surfaces.set(region, item);
       this.renderer.addActor(item.actor);
       this.clip(item.mapper);
     }
-    this.surfaces.get(region).mapper.setInputData(trianglesData(surface, colours));
+    setTriangles(this.surfaces.get(region).mapper, surface, colouring);
     this.render();
   }
 
@@ -290,11 +323,10 @@ export class Scene {
   }
 
   /** Shows a cut, as cut.js makes it, and clips away what lies where `normal` points to; none where cut is null. */
-  setCut(cut, colours, hasEdges, origin, normal) {
+  setCut(cut, colouring, hasEdges, origin, normal) {
     const isClipped = cut !== null;
     if (isClipped) {
-      this.cut.mapper.setColorModeToDirectScalars();
-      this.cut.mapper.setInputData(trianglesData(cut, colours));
+      setTriangles(this.cut.mapper, cut, colouring);
       const points = cut.outlines;
       const lines = cellArray(
         Uint32Array.from({ length: points.length / 3 }, (_, i) => i),

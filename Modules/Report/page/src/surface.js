@@ -1,4 +1,5 @@
 // The surfaces of regions.
+import { restrictToFace, triangleCoefficientCount } from './bernstein.js';
 import { facesOfCell } from './mesh.js';
 
 /** The faces (4 cell + face) of a region's cells across which no cell of that region lies. */
@@ -40,62 +41,37 @@ export function pointNormals(mesh, faces) {
   return normals;
 }
 
-/** The barycentric coordinates, three a vertex, and the triangles of a triangle divided n times along each edge. */
-export function dividedTriangle(n) {
-  const coordinates = [];
-  const triangles = [];
-  const rowBegin = (row) => (row * (row + 1)) / 2;
-  for (let row = 0; row <= n; ++row) {
-    for (let column = 0; column <= row; ++column) {
-      coordinates.push((n - row) / n, (row - column) / n, column / n);
-      if (row < n) {
-        const here = rowBegin(row) + column;
-        const below = rowBegin(row + 1) + column;
-        triangles.push(here, below, below + 1);
-        if (column < row) {
-          triangles.push(here, below + 1, here + 1);
-        }
-      }
-    }
-  }
-  return { coordinates: Float64Array.from(coordinates), triangles: Uint32Array.from(triangles) };
-}
-
 /**
- * The surface of a region as triangles: each face is divided `divisions` times, and each vertex has its density by the
- * polynomial of the face's own cell. Returns points and normals (3 a vertex), densities (1 a vertex), triangles (3
- * each).
+ * The surface of a region: its faces with their normals, and the density on each by the polynomial of the face's own
+ * cell. Returns points and normals (9 a triangle), degree and coefficients (of the density on each triangle; null
+ * without density).
  */
-export function regionSurface(mesh, region, divisions) {
+export function regionSurface(mesh, region) {
   const faces = regionFaces(mesh, region);
-  const faceNormals = pointNormals(mesh, faces);
-  const { coordinates, triangles } = dividedTriangle(divisions);
-  const perFace = coordinates.length / 3;
+  const atPoints = pointNormals(mesh, faces);
+  const degree = mesh.maximumDegree;
+  const stride = triangleCoefficientCount(degree);
   const surface = {
-    points: new Float32Array(3 * perFace * faces.length),
-    normals: new Float32Array(3 * perFace * faces.length),
-    densities: new Float64Array(perFace * faces.length),
-    triangles: new Uint32Array(triangles.length * faces.length)
+    points: new Float32Array(9 * faces.length),
+    normals: new Float32Array(9 * faces.length),
+    degree,
+    coefficients: mesh.hasDensity ? new Float32Array(stride * faces.length) : null
   };
-  const barycentric = [0, 0, 0, 0];
   faces.forEach((face, index) => {
     const corners = facesOfCell[face & 3];
-    const [a, b, c] = corners.map((vertex) => 3 * mesh.tetrahedra[(face & ~3) + vertex]);
-    for (let v = 0; v < perFace; ++v) {
-      const [wa, wb, wc] = [coordinates[3 * v], coordinates[3 * v + 1], coordinates[3 * v + 2]];
-      const vertex = index * perFace + v;
-      for (let i = 0; i < 3; ++i) {
-        surface.points[3 * vertex + i] = wa * mesh.points[a + i] + wb * mesh.points[b + i] + wc * mesh.points[c + i];
-        surface.normals[3 * vertex + i] = wa * faceNormals[a + i] + wb * faceNormals[b + i] + wc * faceNormals[c + i];
+    corners.forEach((corner, i) => {
+      const point = 3 * mesh.tetrahedra[(face & ~3) + corner];
+      for (let axis = 0; axis < 3; ++axis) {
+        surface.points[9 * index + 3 * i + axis] = mesh.points[point + axis];
+        surface.normals[9 * index + 3 * i + axis] = atPoints[point + axis];
       }
-      barycentric[face & 3] = 0;
-      barycentric[corners[0]] = wa;
-      barycentric[corners[1]] = wb;
-      barycentric[corners[2]] = wc;
-      surface.densities[vertex] = mesh.density(face >> 2, ...barycentric);
-    }
-    for (let t = 0; t < triangles.length; ++t) {
-      surface.triangles[index * triangles.length + t] = triangles[t] + index * perFace;
+    });
+    if (mesh.hasDensity) {
+      const cell = face >> 2;
+      surface.coefficients.set(
+        restrictToFace(mesh.coefficientsOf(cell), mesh.degrees[cell], corners, degree),
+        stride * index
+      );
     }
   });
   return surface;

@@ -1,6 +1,6 @@
 // The 3D view of a mesh with its controls: regions, colours, cut, contours, landmarks and the camera.
 import { decodeArray } from './arrays.js';
-import { coloursOfDensities, coloursOfRegions, parseHexColour, regionColour } from './colours.js';
+import { coloursOfRegions, parseHexColour, regionColour } from './colours.js';
 import { planeCut } from './cut.js';
 import { button, checkbox, element, group, oncePerFrame, select, slider } from './dom.js';
 import { bindInteraction, hint } from './interaction.js';
@@ -33,7 +33,6 @@ export class Viewer {
       opacity: 1
     }));
     this.plane = { name: 'axial', normal: planesByName.axial.normal, position: 0, isOn: false };
-    this.resolution = 4;
     this.isColouredByDensity = true;
     this.hasCellEdges = false;
     this.frames = 0;
@@ -172,28 +171,11 @@ export class Viewer {
         this.setCutOn(true);
       }
     );
-    this.resolutionSlider = slider(
-      this.id('cut-resolution'),
-      'Resolution',
-      { min: 1, max: 24, step: 1, value: this.resolution, say: (n) => `${n} per cell edge` },
-      (n) => {
-        this.resolution = n;
-        this.updateCut();
-      }
-    );
     const edges = checkbox(this.id('cut-edges'), 'Edges of the cells', false, (isOn) => {
       this.hasCellEdges = isOn;
       this.updateCut();
     });
-    return group(
-      'Cut',
-      onOff.row,
-      orientation.row,
-      this.alignControl,
-      this.cutSlider.row,
-      this.resolutionSlider.row,
-      edges.row
-    );
+    return group('Cut', onOff.row, orientation.row, this.alignControl, this.cutSlider.row, edges.row);
   }
 
   sayPosition(mm) {
@@ -291,24 +273,30 @@ export class Viewer {
   }
 
   computeSurfaces() {
-    const isCurved = this.mesh.hasDensity && this.mesh.degrees.some((degree) => degree > 1);
     for (const region of this.regions) {
-      region.surface = regionSurface(this.mesh, region.number, isCurved ? 2 : 1);
-      this.scene.setSurface(region.number, region.surface, this.coloursOf(region.surface, region.number));
+      region.surface = regionSurface(this.mesh, region.number);
+      this.scene.setSurface(
+        region.number,
+        region.surface,
+        this.colouringOf(new Uint8Array(region.surface.points.length / 9).fill(region.number))
+      );
     }
     this.showRegions();
   }
 
-  coloursOf({ densities, regions }, region) {
-    return this.isColouredByDensity
-      ? coloursOfDensities(densities, this.description.range)
-      : coloursOfRegions(regions ?? new Uint8Array(densities.length).fill(region));
+  /** How triangles of these regions are coloured. */
+  colouringOf(regions) {
+    return this.isColouredByDensity ? { range: this.description.range } : { colours: coloursOfRegions(regions) };
   }
 
   recolour() {
     this.showKey();
     for (const region of this.regions) {
-      this.scene.setSurface(region.number, region.surface, this.coloursOf(region.surface, region.number));
+      this.scene.setSurface(
+        region.number,
+        region.surface,
+        this.colouringOf(new Uint8Array(region.surface.points.length / 9).fill(region.number))
+      );
     }
     this.updateCut();
   }
@@ -376,12 +364,12 @@ export class Viewer {
     }
     const shown = new Set(this.regions.filter((region) => region.isShown).map((region) => region.number));
     const { normal, position } = this.plane;
-    this.cut = planeCut(this.mesh, normal, position, (region) => shown.has(region), this.resolution);
+    this.cut = planeCut(this.mesh, normal, position, (region) => shown.has(region));
     const origin = normal.map((component) => component * position);
     this.clippedSide = dot(normal, this.scene.direction()) >= 0 ? 1 : -1;
     this.scene.setCut(
       this.cut,
-      this.coloursOf(this.cut),
+      this.colouringOf(this.cut.regions),
       this.hasCellEdges,
       origin,
       normal.map((component) => component * this.clippedSide)
