@@ -92,9 +92,10 @@ function(bonetk_module name)
   if(BONETK_REMOTE_MODULE)
     itk_module_target(${target})
   else()
-    install(TARGETS ${target} EXPORT BoneTKTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS ${target} EXPORT BoneTKTargets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   endif()
-  install(FILES ${headers} DESTINATION ${bonetk_include_dir})
+  install(FILES ${headers} DESTINATION ${bonetk_include_dir} COMPONENT development)
 
   file(GLOB tests CONFIGURE_DEPENDS test/*Test.cxx)
   if(BUILD_TESTING AND tests)

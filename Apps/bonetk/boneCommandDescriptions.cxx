@@ -10,12 +10,28 @@ namespace bone
 {
 namespace
 {
+std::vector<std::string>
+NamesOf(const CLI::Option & option)
+{
+  std::vector<std::string> names;
+  for (const std::string & name : option.get_snames())
+  {
+    names.push_back("-" + name);
+  }
+  for (const std::string & name : option.get_lnames())
+  {
+    names.push_back("--" + name);
+  }
+  return names;
+}
+
 OptionDescription
 DescribeOption(const CLI::Option & option)
 {
   OptionDescription description;
   description.positional = option.get_positional();
   description.name = description.positional ? option.get_name(true) : option.get_lnames().front();
+  description.names = NamesOf(option);
   description.required = option.get_required();
   description.flag = option.get_items_expected_max() == 0;
   for (const std::string & name : option.get_lnames())

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneCommandLine.h"
 
+#include "boneBuildInformation.h"
 #include "boneCommands.h"
 #include "boneIOError.h"
 #include "boneOptions.h"
@@ -232,7 +233,7 @@ void
 AddCommands(CLI::App & app, Action & action, Session & session)
 {
   app.require_subcommand(1);
-  app.set_version_flag("--version", "bonetk " BONETK_VERSION);
+  app.set_version_flag("--version", DescribeBuild(), "Print version, commit, compiler and libraries, and exit");
   AddPhantomCommand(app, action);
   AddCropCommand(app, action);
   AddContoursCommand(app, action);
@@ -259,14 +260,18 @@ AddCommands(CLI::App & app, Action & action, Session & session)
   ReadDecimalNumbers(app);
 }
 
+std::string
+DescribeProgram()
+{
+  return "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage.";
+}
+
 int
 RunCommandLine(const std::vector<std::string> & words, Session & session)
 {
-  session.version = BONETK_VERSION;
+  session.version = GetBuildInformation().version;
   session.commandLine = JoinWords(words);
-  CLI::App app(
-    "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage.",
-    "bonetk");
+  CLI::App app(DescribeProgram(), "bonetk");
   Action action;
   AddCommands(app, action, session);
   int                      exitCode = Success;

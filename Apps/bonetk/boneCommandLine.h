@@ -27,17 +27,18 @@ AddCommands(CLI::App & app, Action & action, Session & session);
 /** What a program has to know of an option to offer it to its own users. */
 struct OptionDescription
 {
-  std::string name; ///< of a value by its place that of its place, else the long name without dashes
-  bool        positional{ false };
-  bool        required{ false };
-  bool        flag{ false }; ///< takes no value
-  std::string negative;      ///< long name that turns the flag off; empty: none
-  std::string type;          ///< "FLOAT", "INT", "TEXT", "x|y|z"
-  int         least{ 1 };    ///< number of values
-  int         most{ 1 };     ///< -1: any
-  int         each{ 0 };     ///< so many values a time the option is named, which may be often; 0: all at once
-  bool        output{ false };
-  std::string help; ///< with unit and default
+  std::string              name;  ///< of a value by its place that of its place, else the long name without dashes
+  std::vector<std::string> names; ///< as they are typed: "-o", "--output"; a value by its place may have none
+  bool                     positional{ false };
+  bool                     required{ false };
+  bool                     flag{ false }; ///< takes no value
+  std::string              negative;      ///< long name that turns the flag off; empty: none
+  std::string              type;          ///< "FLOAT", "INT", "TEXT", "x|y|z"
+  int                      least{ 1 };    ///< number of values
+  int                      most{ 1 };     ///< -1: any
+  int                      each{ 0 }; ///< so many values a time the option is named, which may be often; 0: all at once
+  bool                     output{ false };
+  std::string              help; ///< with unit and default
 };
 
 struct CommandDescription
@@ -50,6 +51,10 @@ struct CommandDescription
 /** Every command, in the order of the program's help. */
 std::vector<CommandDescription>
 DescribeCommands();
+
+/** What the program's help says first. */
+std::string
+DescribeProgram();
 /** \} */
 } // namespace bone
 

@@ -95,6 +95,19 @@ OptionDefault(const ParameterField & field, const T & value)
   }
 }
 
+/** "linear|log" */
+template <typename TEnumeration>
+std::string
+JoinChoices()
+{
+  std::string text;
+  for (const char * name : ParameterChoices<TEnumeration>::names)
+  {
+    text += (text.empty() ? "" : "|") + std::string(name);
+  }
+  return text;
+}
+
 template <typename T>
 CLI::Option *
 AddParameterOption(CLI::App * command, const ParameterField & field, T & value)
@@ -112,7 +125,14 @@ AddParameterOption(CLI::App * command, const ParameterField & field, T & value)
       name,
       [field, &value](const std::string & text) { value = ParseOption<T>(field, text); },
       OptionHelp(field, OptionDefault(field, value)));
-    return option->type_name(std::is_enum_v<T> ? "NAME" : std::is_integral_v<T> ? "INT" : "NUMBER");
+    if constexpr (std::is_enum_v<T>)
+    {
+      return option->type_name(JoinChoices<T>());
+    }
+    else
+    {
+      return option->type_name(std::is_integral_v<T> ? "INT" : "NUMBER");
+    }
   }
   else
   {

@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneResultPage.h"
 
+#include "boneBuildInformation.h"
+
 #include <filesystem>
 
 namespace bone
@@ -41,7 +43,7 @@ WritePage(ReportPage &                                        page,
           const std::vector<std::pair<std::string, double>> & seconds)
 {
   Provenance provenance;
-  provenance.version = "bonetk " BONETK_VERSION;
+  provenance.version = "bonetk " + DescribeVersion();
   provenance.command = session.commandLine;
   provenance.machine = DescribeMachine();
   provenance.time = TimeNow();

@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneAtlasInputs.h"
+#include "boneBuildInformation.h"
 #include "boneCommands.h"
 #include "boneInputOptions.h"
 #include "boneOptions.h"
@@ -226,7 +227,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
   const BuildPlanParameters & plan = parameters.plan;
   BuildReport                 report;
-  report.version = BONETK_VERSION;
+  report.version = GetBuildInformation().version;
   report.files = { options.ct,        options.series,         labels.file,       labels.names, bone.name,
                    options.bone.init, options.bone.structure, options.atlas.file };
   report.registration = job.registration;

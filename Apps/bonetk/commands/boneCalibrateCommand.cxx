@@ -193,7 +193,8 @@ AddCalibrateCommand(CLI::App & app, Action & action)
                  options->laws,
                  "Published laws, applied last, in order: les1994 (k2hpo4 to ash), keyak2005 (ha to ash), schileo2008 "
                  "(ash to apparent)")
-    ->check(CLI::IsMember({ "les1994", "keyak2005", "schileo2008" }).description(""));
+    ->check(CLI::IsMember({ "les1994", "keyak2005", "schileo2008" }).description(""))
+    ->type_name("les1994|keyak2005|schileo2008");
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu)")->required();
   command->callback([options, &action] { action = [options](Session & session) { RunCalibrate(*options, session); }; });
 }

@@ -412,7 +412,7 @@ AddViewOptions(CLI::App * command, DrrOptions & options)
                  "Views framed around the model, mask or CT: ap, pa, left-lateral (or lateral; detector at the "
                  "patient's left), right-lateral")
     ->transform(CLI::Validator(ToPreset, ""))
-    ->type_name("NAME");
+    ->type_name("ap|pa|left-lateral|lateral|right-lateral");
   command->add_option("--carm",
                       options.carm,
                       "The same for a C-arm: primary (LAO positive) and secondary angle (CRA positive) of each view, "
@@ -481,6 +481,7 @@ AddDrrCommand(CLI::App & app, Action & action)
   command->add_option("--save-geometry", options->savedGeometry, "Also write the views, as --convention says");
   command->add_option("--convention", options->convention, "view (default), matrix, plastimatch (.json) or rtk (.xml)")
     ->check(CLI::IsMember({ "view", "matrix", "plastimatch", "rtk" }).description(""))
+    ->type_name("view|matrix|plastimatch|rtk")
     ->needs("--save-geometry");
   command
     ->add_option(

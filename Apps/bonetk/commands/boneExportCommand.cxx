@@ -201,7 +201,8 @@ AddExportCommand(CLI::App & app, Action & action)
   command->add_option("--level", options->level, "Level of a hierarchy, 1 the finest; default 1")
     ->check(CLI::Range(1, 1000).description(""));
   command->add_option("--format", options->format, "abaqus, calculix (.inp), febio (.feb), gmsh (.msh) or vtk (.vtu)")
-    ->check(CLI::IsMember({ "abaqus", "calculix", "febio", "gmsh", "vtk" }).description(""));
+    ->check(CLI::IsMember({ "abaqus", "calculix", "febio", "gmsh", "vtk" }).description(""))
+    ->type_name(JoinChoices<FiniteElementFormat>());
   std::vector<std::string> names{ "list" };
   for (const ElasticityLaw & law : PublishedElasticityLaws())
   {
