@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is needed, builds a release and turns a CT into a density model with radiographs and a report:
+# Turns a CT into a density model with radiographs and a report, by the bonetk that is installed, or else, as with
+# BONETK_FROM_SOURCE=1, by one that it builds from the sources around it, after it has installed what that needs:
 #
 #   Examples/run.sh                          the analytic femur phantom
 #   Examples/run.sh CT LABELS [LABEL]        a CT with a label map on its grid (LABEL: the bone's value, where it has several)
 #   Examples/run.sh CT CONTOURS              a CT with initial contours (.vtp, or .mrk.json of 3D Slicer)
 #
-# Results go to the folder out/ of the project. Running it again is quick.
+# Results go to the folder out/ of the project, or of the current folder where there are no sources. Running it again is
+# quick.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -20,10 +22,20 @@ for file in "${@:1:2}"; do
   fi
 done
 
-"$root/CMake/install-packages.sh"
-(cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release --target bonetk)
-bonetk=$root/build/release/Apps/bonetk/bonetk
+sources=no
+[ ! -e "$root/CMakePresets.json" ] || sources=yes
+bonetk=$(command -v bonetk || true)
+if [ $sources = yes ] && { [ -z "$bonetk" ] || [ -n "${BONETK_FROM_SOURCE:-}" ]; }; then
+  "$root/CMake/install-packages.sh"
+  (cd "$root" && cmake --preset release > /dev/null && cmake --build --preset release --target bonetk)
+  bonetk=$root/build/release/Apps/bonetk/bonetk
+elif [ -z "$bonetk" ]; then
+  echo "$0: no bonetk is installed, and there are no sources in $root to build it from" >&2
+  exit 1
+fi
+echo "By $bonetk, $("$bonetk" --version | head -n 1):"
 
+[ $sources = yes ] || root=$PWD
 mkdir -p "$root/out"
 if [ $# -eq 0 ]; then
   out=$root/out/femur_phantom
