@@ -343,6 +343,36 @@ TEST_F(ImageIOTest, RefusesWhatIsNoVolume)
   EXPECT_THAT(ErrorOfReading("rgb.nii"), HasSubstr("3 components per voxel"));
 }
 
+TEST_F(ImageIOTest, ReadsAnSformAloneWithSmallVoxelsOrAFarOriginOrRoundedAxes)
+{
+  // Each is refused by ITK 5.2 as not orthonormal.
+  struct Case
+  {
+    std::array<float, 3> spacing;
+    std::array<float, 3> origin;
+    float                skew;
+  };
+  for (const auto & [spacing, origin, skew] : { Case{ { 0.2f, 0.2f, 1.0f }, { 65.5f, 146.8f, -420.1f }, 0.0f },
+                                                Case{ { 0.082f, 0.082f, 0.082f }, { 12.0f, -30.0f, 700.0f }, 0.0f },
+                                                Case{ { 0.8f, 0.8f, 1.5f }, { -200.0f, 180.0f, -1400.0f }, 5e-4f } })
+  {
+    std::string file = Nifti({ 4, 3, 2 });
+    const float affine[3][4] = { { -spacing[0], skew, 0, origin[0] },
+                                 { 0, 0, spacing[2], origin[1] },
+                                 { 0, spacing[1], 0, origin[2] } };
+    std::memcpy(&file[280], affine, sizeof(affine));
+    std::memcpy(&file[148], "regions of one bone", 19);
+    WriteText("s.nii", file);
+    const auto ct = ReadCT(Path("s.nii"));
+    const auto place = ct->TransformIndexToPhysicalPoint<double>({ { 3, 2, 1 } });
+    EXPECT_NEAR(place[0], 3 * spacing[0] - origin[0], 2e-3);
+    EXPECT_NEAR(place[1], -spacing[2] - origin[1], 2e-3);
+    EXPECT_NEAR(place[2], 2 * spacing[1] + origin[2], 2e-3);
+    EXPECT_NEAR(ct->GetSpacing()[2], spacing[2], 1e-6);
+    EXPECT_TRUE(StatesOneBone(*ReadLabels(Path("s.nii"))));
+  }
+}
+
 TEST_F(ImageIOTest, RefusesAShearedDirection)
 {
   WriteText("s.nii", Nifti({ 4, 3, 2 }, 0.01f));

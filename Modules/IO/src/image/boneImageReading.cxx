@@ -7,6 +7,7 @@
 #include "boneImageHeader.h"
 #include "boneParameters.h"
 #include "boneRefuse.h"
+#include "boneSformImageIO.h"
 #include "boneVtkFile.h"
 
 #include <itkImageFileReader.h>
@@ -79,14 +80,19 @@ OpenImage(const std::string & path)
   }
   catch (const itk::ExceptionObject & error)
   {
-    const std::string text = ErrorLine(error);
-    if (text.find("orthonormal") != std::string::npos)
+    const bool isSkewed = ErrorLine(error).find("orthonormal") != std::string::npos;
+    const auto bySform = isSkewed ? OpenBySform(path) : nullptr;
+    if (isSkewed && bySform.IsNull())
     {
       throw IOError(path,
                     "its axes are not at right angles (a sheared, empty or tiny direction in the header: are its units "
                     "mm?): resample it to an orthogonal grid, or correct the header's sform and qform");
     }
-    throw IOError(path, "is no readable image: its header is damaged, or of a form that is not known");
+    if (bySform.IsNull())
+    {
+      throw IOError(path, "is no readable image: its header is damaged, or of a form that is not known");
+    }
+    io = bySform;
   }
   if (io->GetComponentType() == itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE)
   {
