@@ -66,7 +66,8 @@ def measure(bone, folder):
                    for k, cut in enumerate(seen)]
     every = numpy.concatenate(differences)
     row = [bone.name, grid.GetNumberOfCells(), f"{page.stat().st_size / 1e6:.2f}", f"{statistics.median(frames):.2f}",
-           f"{frames[0]:.2f} to {frames[-1]:.2f}", f"{statistics.median(times):.0f}", f"{every.mean():.2f}", f"{every.max():.1f}"]
+           f"{frames[0]:.2f} to {frames[-1]:.2f}", f"{statistics.median(times):.0f}", f"{every.mean():.2f}",
+           f"{numpy.percentile(every, 99):.1f}"]
     failed = []
     if statistics.median(frames) > FIRST_FRAME:
         failed.append(f"{bone.name}: first frame after {statistics.median(frames):.2f} s")
@@ -90,7 +91,7 @@ def main():
         measured = [measure(bone, pathlib.Path(folder)) for bone in chosen]
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     head = ["bone", "tetrahedra of level 1", "page, MB", "first frame, s", "least to most", "cut, ms", "cut to density, HU, mean",
-            "largest"]
+            "99 % below"]
     failed = [text for _, texts in measured for text in texts]
     REPORT.write_text(PAGE.format(commit=commit, machine=machine(), table=table(head, [row for row, _ in measured])))
     sys.exit("\n".join(failed) or 0)
@@ -106,7 +107,8 @@ First frame: from the start of loading the page to its first picture, median of 
 through the middle of level 1: each cell's polygon and the polynomial on it; median. Each pixel of the screen is then coloured by the
 polynomial's value there. Cut to density: at every 0.2 mm of the cuts of levels 1 and 2 on three planes, beside
 `DensityImageFilter` on the model's files (limit of the mean 1 HU). The difference comes of the page's coefficients, which are
-rounded to a 500th of their range, and of its points, which are rounded to a 65,000th of the bone's length.
+rounded to a 500th of their range, and of its points, which are rounded to a 65,000th of the bone's length: at the border of two
+tetrahedra a pixel can lie in the one here and in the other there.
 """
 
 
