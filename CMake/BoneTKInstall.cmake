@@ -19,7 +19,7 @@ install(EXPORT BoneTKTargets NAMESPACE BoneTK:: DESTINATION ${config_dir} COMPON
 # In the source tree's layout, so that links between the pages hold.
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc/bonetk-doc)
 install(FILES README.md CHANGELOG.md DESTINATION ${doc_dir} COMPONENT documentation)
-install(DIRECTORY Documentation Examples DESTINATION ${doc_dir} COMPONENT documentation
+install(DIRECTORY Documentation Examples DESTINATION ${doc_dir} COMPONENT documentation USE_SOURCE_PERMISSIONS
         PATTERN Doxyfile EXCLUDE PATTERN __pycache__ EXCLUDE)
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
      Modules/*/README.md Testing/*/README.md Wrapping/README.md Wrapping/*/README.md)

@@ -54,6 +54,22 @@ class Install(TestCase):
                 self.assertTrue((page.parent / link).exists(), f"{page.relative_to(pages)}: {link}")
         self.assertGreater(links, 10)
 
+    def test_example_uses_what_is_installed(self):
+        prefix = self.install("program", "documentation")
+        script = prefix / "share/doc/bonetk-doc/Examples/run.sh"
+        # A stand-in, as the femur of this example takes half a minute.
+        (prefix / "bin/bonetk").unlink()
+        (prefix / "bin/bonetk").write_text('#!/bin/sh\necho "bonetk 9"; echo "$@" >> called\n')
+        (prefix / "bin/bonetk").chmod(0o755)
+        code, out, err = run(script, env={"PATH": f"{prefix}/bin:/usr/bin:/bin"})
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn(f"By {prefix}/bin/bonetk, bonetk 9:", out)
+        called = pathlib.Path("called").read_text().split("\n")
+        self.assertIn(f"-o {os.getcwd()}/out/femur_phantom", called[2])
+        code, _, err = run(script, env={"PATH": "/usr/bin:/bin"}) if not shutil.which("bonetk") else (1, "", "no bonetk")
+        self.assertEqual(code, 1)
+        self.assertIn("no bonetk", err)
+
     def test_version(self):
         code, out, err = bonetk("--version")
         self.assertEqual((code, err), (0, ""))

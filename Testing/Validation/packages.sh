@@ -44,10 +44,11 @@ mmdebstrap --variant=apt --quiet "$(. /etc/os-release && echo "$VERSION_CODENAME
 cp "$work"/first/*.deb "$work/root/tmp"
 mount -t proc proc "$work/root/proc"
 within() { chroot "$work/root" env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
-add() { within apt-get install -q -y --no-install-recommends "$@" >&2; }
+# Patterns of file names are those of the root.
+add() { within sh -c "apt-get install -q -y --no-install-recommends $*" >&2; }
 within apt-get update -q >&2
-add /tmp/bonetk_*.deb
-say "a clean root with bonetk" "$((SECONDS - begin)) s, $(du -sm "$work/root" | cut -f 1) MB"
+add "/tmp/bonetk_*.deb"
+say "a clean root with bonetk" "$((SECONDS - begin)) s, $(du -smx "$work/root" | cut -f 1) MB"
 
 within bonetk --version
 cat > "$work/root/tmp/phantom.sh" << 'END'
@@ -66,19 +67,19 @@ say "phantom, build and info" "$took s"
 [ $took -le 60 ] || fail "the first commands took more than 60 s"
 
 # The README's first command, from the documentation's package.
-add /tmp/bonetk-doc_*.deb
+add "/tmp/bonetk-doc_*.deb"
 begin=$SECONDS
 within sh -c "cd /tmp/try && /usr/share/doc/bonetk-doc/Examples/run.sh" >&2
 took=$((SECONDS - begin))
 say "the README's first command, Examples/run.sh" "$took s"
 [ $took -le 60 ] || fail "the README's first command took more than 60 s"
 
-add /tmp/python3-bonetk_*.deb
+add "/tmp/python3-bonetk_*.deb"
 say "import bonetk" "$(within python3 -c "
 import time
 begin = time.time()
 import bonetk
-print(f'{time.time() - begin:.2f} s, version {bonetk.version}')")"
+print(f'{time.time() - begin:.2f} s, version {bonetk.__version__}')")"
 within python3 -c "
 import bonetk
 result = bonetk.commands.info('/tmp/try/femur/model.hierarchy.json')
@@ -86,9 +87,9 @@ assert 'hierarchy' in result.text, result.text
 mesh = bonetk.read_mesh('/tmp/try/femur/model_L1.vtu')
 assert mesh.points.shape[1] == 3, mesh" >&2
 
-add /tmp/libbonetk-dev_*.deb g++ cmake ninja-build
+add "/tmp/libbonetk-dev_*.deb" g++ cmake ninja-build
 begin=$SECONDS
 within sh -c "cp -r /usr/share/doc/bonetk-doc/Examples /tmp/examples && cd /tmp/examples &&
   cmake -G Ninja -S . -B build && cmake --build build && cd /tmp/try && /tmp/examples/build/bonePhantomExample e.mha l.mha" >&2
 say "all example programs built with libbonetk-dev" "$((SECONDS - begin)) s"
-say "the root with all packages" "$(du -sm "$work/root" | cut -f 1) MB"
+say "the root with all packages" "$(du -smx "$work/root" | cut -f 1) MB"
