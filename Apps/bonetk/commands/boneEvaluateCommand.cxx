@@ -6,14 +6,12 @@
 #include "boneParameterOptions.h"
 #include "boneResultPage.h"
 
+#include "boneAtlasReport.h"
 #include "boneAtomicFile.h"
 #include "boneIOError.h"
 #include "boneModelIO.h"
 #include "bonePopulation.h"
-#include "boneSubjectEvaluation.h"
 #include "boneSubjectPage.h"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iomanip>
@@ -32,14 +30,6 @@ struct EvaluateOptions
   std::string                 output;
   PageOption                  page;
 };
-
-nlohmann::json
-ReportUsualness(const Usualness & of)
-{
-  return { { "scores", std::vector<double>(of.scores.data(), of.scores.data() + of.scores.size()) },
-           { "mahalanobisDistance", of.distance },
-           { "probability", of.probability } };
-}
 
 std::string
 Describe(const char * what, const Usualness & of)
@@ -81,16 +71,10 @@ RunEvaluate(const EvaluateOptions & options, Session & session)
     throw IOError(options.model, ErrorLine(error));
   }
   const SubjectEvaluation result = EvaluateSubject(content, subject);
-  nlohmann::json          report{ { "model", options.model }, { "atlas", options.atlas } };
-  report["registered"] = population.WasRegistered();
-  if (population.WasRegistered())
-  {
-    report["surfaceDistanceMm"] = population.GetFilter()->GetReport().surfaceDistance;
-    report["mirrored"] = population.GetFilter()->GetReport().mirrored;
-  }
-  report["shape"] = ReportUsualness(result.shape);
-  report["shape"]["residualMm"] = result.shapeResidual;
-  report["shape"]["typicalResidualMm"] = result.shapeTypical;
+  nlohmann::json          report =
+    ReportSubject(result, population.WasRegistered() ? &population.GetFilter()->GetReport() : nullptr);
+  report["model"] = options.model;
+  report["atlas"] = options.atlas;
   std::ostringstream text;
   text << Describe("shape", result.shape) << '\n'
        << std::fixed << std::setprecision(2) << "  " << result.shapeResidual
@@ -98,9 +82,6 @@ RunEvaluate(const EvaluateOptions & options, Session & session)
        << " mm)\n";
   if (result.hasDensity)
   {
-    report["density"] = ReportUsualness(result.density);
-    report["density"]["residualMeanAbsolute"] = result.densityResidual.meanAbsolute;
-    report["density"]["residualBias"] = result.densityResidual.bias;
     text << Describe("density", result.density) << '\n'
          << "  " << std::setprecision(0) << result.densityResidual.meanAbsolute
          << " HU (mean) from the nearest density of the modes\n";

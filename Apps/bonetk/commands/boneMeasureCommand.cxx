@@ -14,7 +14,6 @@
 #include "boneMeshIO.h"
 
 #include <filesystem>
-#include <sstream>
 
 namespace bone
 {
@@ -38,64 +37,21 @@ IsSurface(const std::string & path)
   return HasExtension(path, ".ply") || HasExtension(path, ".stl") || HasExtension(path, ".vtp");
 }
 
-std::string
-DescribePoint(const double * x)
-{
-  std::ostringstream text;
-  text << '(' << x[0] << ", " << x[1] << ", " << x[2] << ')';
-  return text.str();
-}
-
-/** The solids of the command line: four numbers a ball, seven a cylinder or capsule, six a half-space. */
 std::vector<NamedSolid>
 ReadSolids(const MeasureOptions & options)
 {
   std::vector<NamedSolid> solids;
-  const auto              add = [&solids](const std::vector<double> & numbers,
-                             std::size_t                 each,
-                             const char *                name,
-                             const char *                option,
-                             const auto &                make) {
-    RequireNumbersEach(option, numbers, each);
-    for (std::size_t i = 0; i < numbers.size(); i += each)
-    {
-      NamedSolid named = make(numbers.data() + i);
-      named.name = name + std::to_string(i / each + 1);
-      solids.push_back(named);
-    }
-  };
-  const auto point = [](const double * x) { return Vector3(x[0], x[1], x[2]); };
-  const auto say = [](const auto &... parts) {
-    std::ostringstream text;
-    (text << ... << parts);
-    return text.str();
+  const auto              add = [&solids](SolidShape shape, const std::vector<double> & numbers, const char * option) {
+    RequireNumbersEach(option, numbers, NumbersOfSolid(shape));
+    const auto named = NameSolids(shape, numbers);
+    solids.insert(solids.end(), named.begin(), named.end());
   };
   try
   {
-    add(options.balls, 4, "ball", "--ball", [&](const double * x) {
-      return NamedSolid{ "",
-                         say("the ball of radius ", x[3], " mm about ", DescribePoint(x)),
-                         MakeBall(point(x), x[3]) };
-    });
-    add(options.cylinders, 7, "cylinder", "--cylinder", [&](const double * x) {
-      return NamedSolid{
-        "",
-        say("the cylinder of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
-        MakeCylinder(point(x), point(x + 3), x[6])
-      };
-    });
-    add(options.capsules, 7, "capsule", "--capsule", [&](const double * x) {
-      return NamedSolid{ "",
-                         say(
-                           "the capsule of radius ", x[6], " mm from ", DescribePoint(x), " to ", DescribePoint(x + 3)),
-                         MakeCapsule(point(x), point(x + 3), x[6]) };
-    });
-    add(options.halfSpaces, 6, "halfSpace", "--half-space", [&](const double * x) {
-      return NamedSolid{ "",
-                         say(
-                           "the half-space from the plane through ", DescribePoint(x), " along ", DescribePoint(x + 3)),
-                         MakeHalfSpace(point(x), point(x + 3)) };
-    });
+    add(SolidShape::Ball, options.balls, "--ball");
+    add(SolidShape::Cylinder, options.cylinders, "--cylinder");
+    add(SolidShape::Capsule, options.capsules, "--capsule");
+    add(SolidShape::HalfSpace, options.halfSpaces, "--half-space");
   }
   catch (const std::invalid_argument & error)
   {

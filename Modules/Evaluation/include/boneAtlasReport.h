@@ -4,10 +4,12 @@
 #ifndef boneAtlasReport_h
 #define boneAtlasReport_h
 
+#include "boneAtlasRegistration.h"
 #include "boneModelEvaluation.h"
 #include "boneModelTraining.h"
 #include "boneReportPage.h"
 #include "boneStatisticalModel.h"
+#include "boneSubjectEvaluation.h"
 
 namespace bone
 {
@@ -28,6 +30,11 @@ EvaluateAtlas(const TrainingSet & set, const StatisticalModel & model, AtlasRepo
 /** Subjects with their distances and scores, and the curves of EvaluateAtlas: `subjects`, `shape`, `density`. */
 nlohmann::json
 ReportAtlas(const AtlasReport & report);
+
+/** A subject against an atlas: `shape`, `density` where there is one, `registered`, and of a registration
+ * `surfaceDistanceMm` and `mirrored`. `registration`: none where the subject was on the atlas' topology. */
+nlohmann::json
+ReportSubject(const SubjectEvaluation & subject, const RegistrationReport * registration);
 
 /** The atlas with sliders for its modes, their pictures, curves and subjects. */
 ReportPage

@@ -122,6 +122,38 @@ EvaluateAtlas(const TrainingSet & set, const StatisticalModel & model, AtlasRepo
                                       : std::vector<DensityQuality>();
 }
 
+namespace
+{
+nlohmann::json
+ReportUsualness(const Usualness & of)
+{
+  return { { "scores", std::vector<double>(of.scores.data(), of.scores.data() + of.scores.size()) },
+           { "mahalanobisDistance", of.distance },
+           { "probability", of.probability } };
+}
+} // namespace
+
+nlohmann::json
+ReportSubject(const SubjectEvaluation & subject, const RegistrationReport * registration)
+{
+  nlohmann::json report{ { "registered", registration != nullptr } };
+  if (registration != nullptr)
+  {
+    report["surfaceDistanceMm"] = registration->surfaceDistance;
+    report["mirrored"] = registration->mirrored;
+  }
+  report["shape"] = ReportUsualness(subject.shape);
+  report["shape"]["residualMm"] = subject.shapeResidual;
+  report["shape"]["typicalResidualMm"] = subject.shapeTypical;
+  if (subject.hasDensity)
+  {
+    report["density"] = ReportUsualness(subject.density);
+    report["density"]["residualMeanAbsolute"] = subject.densityResidual.meanAbsolute;
+    report["density"]["residualBias"] = subject.densityResidual.bias;
+  }
+  return report;
+}
+
 nlohmann::json
 ReportAtlas(const AtlasReport & report)
 {

@@ -25,6 +25,24 @@ struct NamedSolid
   Solid       solid;
 };
 
+/** What a solid is given by, mm. */
+enum class SolidShape : int
+{
+  Ball = 0,     ///< x y z radius
+  Cylinder = 1, ///< x y z of one end, x y z of the other, radius
+  Capsule = 2,  ///< the same with round ends beyond
+  HalfSpace = 3 ///< x y z of a point of its plane, x y z into it
+};
+
+/** How many numbers a solid is given by. */
+std::size_t
+NumbersOfSolid(SolidShape shape);
+
+/** Solids of one shape, so many numbers each, with names ("ball1", "ball2", ...) and descriptions. Throws
+ * std::invalid_argument where numbers make no solid, see MakeBall. */
+std::vector<NamedSolid>
+NameSolids(SolidShape shape, const std::vector<double> & numbers);
+
 /** Everything measured on a model. */
 struct MeasureReport
 {

@@ -9,9 +9,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace bone
 {
+std::size_t
+NumbersOfSolid(SolidShape shape)
+{
+  return shape == SolidShape::Ball ? 4 : shape == SolidShape::HalfSpace ? 6 : 7;
+}
+
+namespace
+{
+NamedSolid
+NameSolid(SolidShape shape, const double * x)
+{
+  const Vector3      from(x[0], x[1], x[2]);
+  std::ostringstream text;
+  const auto         point = [&text](const double * p) -> std::ostream & {
+    return text << '(' << p[0] << ", " << p[1] << ", " << p[2] << ')';
+  };
+  if (shape == SolidShape::Ball)
+  {
+    text << "the ball of radius " << x[3] << " mm about ";
+    point(x);
+    return { "ball", text.str(), MakeBall(from, x[3]) };
+  }
+  const Vector3 to(x[3], x[4], x[5]);
+  if (shape == SolidShape::HalfSpace)
+  {
+    text << "the half-space from the plane through ";
+    point(x) << " along ";
+    point(x + 3);
+    return { "halfSpace", text.str(), MakeHalfSpace(from, to) };
+  }
+  const bool        flat = shape == SolidShape::Cylinder;
+  const std::string name = flat ? "cylinder" : "capsule";
+  text << "the " << name << " of radius " << x[6] << " mm from ";
+  point(x) << " to ";
+  point(x + 3);
+  return { name, text.str(), flat ? MakeCylinder(from, to, x[6]) : MakeCapsule(from, to, x[6]) };
+}
+} // namespace
+
+std::vector<NamedSolid>
+NameSolids(SolidShape shape, const std::vector<double> & numbers)
+{
+  const std::size_t       each = NumbersOfSolid(shape);
+  std::vector<NamedSolid> solids;
+  for (std::size_t i = 0; i + each <= numbers.size(); i += each)
+  {
+    solids.push_back(NameSolid(shape, numbers.data() + i));
+    solids.back().name += std::to_string(i / each + 1);
+  }
+  return solids;
+}
+
 namespace
 {
 constexpr const char * NoDensity = "the model holds no density: fit one to a CT";
