@@ -1,20 +1,29 @@
 """Density along a screw's path: from a CT to a figure.
 
-density_along_screw.py [FIGURE.png]: a CT of an analytic femur with its label map becomes a density model, and the figure
-shows the model's density from the lateral cortex through the neck into the head, with the CT's own voxels.
+A CT of an analytic femur with its label map becomes a density model, and the figure shows the model's density from the
+lateral cortex through the neck into the head, with the CT's own voxels.
 """
-import sys
+import argparse
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 
 import bonetk
 
 
-def screw_path(mesh):
+def options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("figure", nargs="?", default="density_along_screw.png", help="file of the figure")
+    parser.add_argument("--spacing", type=float, default=1.0, help="of the CT's voxels, mm")
+    parser.add_argument("--tetrahedra", type=int, default=20000, help="of the model")
+    return parser.parse_args()
+
+
+def screw_path(mesh: bonetk.DensityMesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Start and end: along the neck, from the bone's side to the middle of its head."""
     points = mesh.points
     top = points[points[:, 2] > points[:, 2].max() - 45]
@@ -27,11 +36,11 @@ def screw_path(mesh):
     return start, head
 
 
-def main():
-    figure = sys.argv[1] if len(sys.argv) > 1 else "density_along_screw.png"
-    ct, regions = bonetk.phantom("femur", spacing=(1, 1, 1))
+def main() -> None:
+    asked = options()
+    ct, regions = bonetk.phantom("femur", spacing=[asked.spacing] * 3)
     labels = bonetk.Image((regions.array > 0).astype(np.int16), regions.origin, regions.spacing, regions.direction)
-    model = bonetk.build(ct, labels, tetrahedra=20000, degree=3, levels=[0.2])
+    model = bonetk.build(ct, labels, tetrahedra=asked.tetrahedra, degree=3, levels=[0.2])
     mesh = model[0]
 
     start, end = screw_path(mesh)
@@ -55,9 +64,10 @@ def main():
     axes[1].set(xlabel="distance along the screw (mm)", ylabel="density (HU)", title="Density along the screw")
     axes[1].legend()
     fig.tight_layout()
-    fig.savefig(figure, dpi=110)
+    fig.savefig(asked.figure, dpi=110)
     in_bone = np.isfinite(density)
-    print(f"{in_bone.sum() / len(path) * distance[-1]:.1f} mm of the path lie in bone, mean density {density[in_bone].mean():.0f} HU")
+    length = in_bone.sum() / len(path) * distance[-1]
+    print(f"{length:.1f} mm of the path lie in bone, mean density {density[in_bone].mean():.0f} HU")
     print(f"difference to the voxels there: {np.nanmean(np.abs(density - voxels)):.0f} HU on average")
 
 

@@ -1,9 +1,10 @@
 """A subject's bone from two radiographs and an atlas.
 
-subject_from_two_radiographs.py [FIGURE.png]: analytic femora of several seeds become an atlas; a subject that is not among
-its models is recovered from its radiographs from the front and the side, and the figure shows how near the result is.
+Analytic femora of several seeds become an atlas; a subject that is not among its models is recovered from its radiographs
+from the front and the side, and the figure shows how near the result is.
 """
-import sys
+import argparse
+import functools
 
 import matplotlib
 
@@ -14,41 +15,60 @@ import numpy as np
 import bonetk
 
 DEGREE = 1
-SUBJECTS = 8
 WATER = 0.02059  # attenuation per mm at 60 keV
 
 
-def xray_of(mesh, view):
+def options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("figure", nargs="?", default="subject_from_two_radiographs.png", help="file of the figure")
+    parser.add_argument("--subjects", type=int, default=8, help="of the atlas")
+    parser.add_argument("--spacing", type=float, default=1.5, help="of the CTs' voxels, mm")
+    parser.add_argument("--tetrahedra", type=int, default=6000, help="of a model")
+    parser.add_argument("--pixels", type=int, default=256, help="along the longer side of a radiograph")
+    parser.add_argument("--iterations", type=int, default=None, help="of the registration at the most")
+    return parser.parse_args()
+
+
+def xray_of(mesh: bonetk.DensityMesh, view: bonetk.XRayGeometry) -> bonetk.Image:
     """What a bone adds to the line integrals of the attenuation of the soft tissue about it, which is like water."""
     return bonetk.Image(bonetk.drr(mesh, view).array * np.float32(WATER / 1000))
 
 
-def ct_of(seed):
-    ct, regions = bonetk.phantom("femur", seed, spacing=(1.5, 1.5, 1.5))
-    return ct, bonetk.Image((regions.array > 0).astype(np.int16), regions.origin, regions.spacing, regions.direction)
+class Subjects:
+    """Femora by their seeds, as a scanner and a segmentation give them."""
+
+    def __init__(self, spacing: float, tetrahedra: int) -> None:
+        self.spacing = [spacing] * 3
+        self.tetrahedra = tetrahedra
+
+    @functools.cache
+    def ct(self, seed: int) -> tuple[bonetk.Image, bonetk.Image]:
+        ct, regions = bonetk.phantom("femur", seed, spacing=self.spacing)
+        bone = (regions.array > 0).astype(np.int16)
+        return ct, bonetk.Image(bone, regions.origin, regions.spacing, regions.direction)
+
+    def model(self, seed: int) -> bonetk.DensityMesh:
+        """A density model with a topology of its own."""
+        return bonetk.build(*self.ct(seed), tetrahedra=self.tetrahedra, degree=DEGREE, levels=[0.5])[0]
+
+    def on_topology(self, standard: bonetk.DensityMesh, seed: int) -> bonetk.DensityMesh:
+        """The standard model's topology on a subject, with the subject's density."""
+        return bonetk.fit_density(self.ct(seed)[0], bonetk.register_mesh(standard, self.model(seed)), degree=DEGREE)
 
 
-def model_of(seed):
-    """A density model with a topology of its own."""
-    return bonetk.build(*ct_of(seed), tetrahedra=6000, degree=DEGREE, levels=[0.5])[0]
-
-
-def on_topology(standard, seed):
-    """The standard model's topology on a subject, with the subject's density."""
-    return bonetk.fit_density(ct_of(seed)[0], bonetk.register_mesh(standard, model_of(seed)), degree=DEGREE)
-
-
-def main():
-    figure = sys.argv[1] if len(sys.argv) > 1 else "subject_from_two_radiographs.png"
-    standard = model_of(0)
-    atlas = bonetk.train([on_topology(standard, seed) for seed in range(1, SUBJECTS + 1)])
+def main() -> None:
+    asked = options()
+    subjects = Subjects(asked.spacing, asked.tetrahedra)
+    standard = subjects.model(0)
+    atlas = bonetk.train([subjects.on_topology(standard, seed) for seed in range(1, asked.subjects + 1)])
     print(atlas)
 
-    truth = model_of(100)
+    truth = subjects.model(100)
     lower, upper = truth.points.min(axis=0) - 15, truth.points.max(axis=0) + 15
-    views = [bonetk.XRayGeometry.framing(lower, upper, beam=beam, pixels=256) for beam in ((0, 1, 0), (1, 0, 0))]
+    views = [bonetk.XRayGeometry.framing(lower, upper, beam=beam, pixels=asked.pixels) for beam in ((0, 1, 0), (1, 0, 0))]
     xrays = [xray_of(truth, view) for view in views]
-    found, result = bonetk.register_deformable(atlas, list(zip(xrays, views)))
+    limits = {} if asked.iterations is None else {"iterations": asked.iterations}
+    found, result = bonetk.register_deformable(atlas, list(zip(xrays, views)), **limits)
 
     # Points of the recovered surface that lie in the true bone, and how far its density is off where both are bone.
     places = np.random.default_rng(1).uniform(lower, upper, (40000, 3))
@@ -72,7 +92,7 @@ def main():
             axis.axis("off")
     fig.suptitle(f"Femur of seed 100 from two X-rays: Dice {dice:.3f}, {result['quality']}")
     fig.tight_layout()
-    fig.savefig(figure, dpi=110)
+    fig.savefig(asked.figure, dpi=110)
 
 
 if __name__ == "__main__":

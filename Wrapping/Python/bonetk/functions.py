@@ -1,8 +1,9 @@
 """Functions in memory. Their further keywords are the parameters of the filters that they run, see each filter's help."""
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union
 
 import numpy as np
 
@@ -19,7 +20,22 @@ from ._bonetk import (
 )
 from .images import as_image
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 Progress = Callable[[float], object]
+
+
+_Output = TypeVar("_Output", covariant=True)
+
+
+class _Source(Protocol[_Output]):
+    """A filter with one output."""
+
+    def update(self, progress: Progress | None) -> None: ...
+
+    @property
+    def output(self) -> _Output: ...
 
 
 def _set(filter_: Any, parameters: dict[str, Any]) -> None:
@@ -31,11 +47,11 @@ def _set(filter_: Any, parameters: dict[str, Any]) -> None:
         setattr(filter_, name, value)
 
 
-def _run(filter_: Any, parameters: dict[str, Any], progress: Progress | None, output: str = "output") -> Any:
+def _run(filter_: _Source[_Output], parameters: dict[str, Any], progress: Progress | None) -> _Output:
     """Runs a filter and hands out its output, which is then its own."""
     _set(filter_, parameters)
     filter_.update(progress)
-    return _bonetk._detach(getattr(filter_, output))
+    return _bonetk._detach(filter_.output)
 
 
 def contours(
@@ -125,7 +141,8 @@ def simplify(
     f = _bonetk.TetraCollapseFilter()
     f.mesh = mesh
     count = 0 if mesh.tetrahedra is None else len(mesh.tetrahedra)
-    f.levels = [round(level * count) if level < 1 else level for level in levels]
+    numbers: list[Any] = [round(level * count) if level < 1 else level for level in levels]
+    f.levels = numbers
     return _run(f, parameters, progress)
 
 
@@ -164,12 +181,13 @@ def drr(
         f.image = as_image(source)
         f.mask = None if mask is None else as_image(mask, labels=True)
     f.geometry = geometry
-    return _run(f, parameters, progress)
+    radiograph: Image = _run(f, parameters, progress)
+    return radiograph
 
 
 def drr_vjp(
     mesh: DensityMesh, geometry: XRayGeometry, pose: Any = None, *, pose_centre: Any = None, **parameters: Any
-) -> tuple[np.ndarray, Callable[[Any], dict[str, np.ndarray]]]:
+) -> tuple[npt.NDArray[np.float32], Callable[[Any], dict[str, npt.NDArray[np.float64]]]]:
     """The radiograph (rows x columns) and a function from derivatives by its pixels to derivatives by the model.
 
     The function takes rows x columns numbers and gives a dict of ``pose`` (6; per mm, per radian), ``points`` (n x 3, per
@@ -181,7 +199,7 @@ def drr_vjp(
 def drr_derivatives(
     mesh: DensityMesh, geometry: XRayGeometry, pose: Any = None, *, pose_centre: Any = None, by_pose: bool = True,
     shape: Sequence[Any] = (), density: Sequence[Any] = (), **parameters: Any,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
     """The radiograph (rows x columns) and its derivatives (modes x rows x columns), see Projector.derivatives."""
     projector = Projector(mesh, keep=False, **parameters)
     return projector.derivatives(
@@ -222,14 +240,14 @@ def register_mesh(
     return _run(f, parameters, progress)
 
 
-Views = Sequence[tuple[Any, XRayGeometry]]
+Views = Sequence[Union[tuple[Any, XRayGeometry], tuple[Any, XRayGeometry, Any]]]
 
 
 def _set_views(f: Any, views: Views, initial_transform: Any) -> None:
-    for index, (radiograph, geometry, *weights) in enumerate(views):
+    for index, (radiograph, *others) in enumerate(views):
         if isinstance(radiograph, np.ndarray) and radiograph.ndim == 2:
             radiograph = radiograph[np.newaxis]
-        f.set_view(index, radiograph, geometry, *weights)
+        f.set_view(index, radiograph, *others)
     if initial_transform is not None:
         f.set_initial_transform(initial_transform)
 
@@ -273,3 +291,66 @@ def register_volume(
     f.model = model
     mesh = _run(f, parameters, progress)
     return mesh, f.result()
+
+
+Landmarks = Mapping[str, Any]
+
+
+def measure(
+    mesh: DensityMesh, landmarks: Landmarks | None = None, *, standard: DensityMesh | None = None, balls: Any = (),
+    cylinders: Any = (), capsules: Any = (), half_spaces: Any = (), **parameters: Any,
+) -> dict[str, Any]:
+    """Measures of a model, as ``bonetk measure`` writes them: a dict of landmarks, measures and missing.
+
+    landmarks: name and point (mm) each; with those of a femur or a hemipelvis come that bone's measures
+    standard: model of the mesh's topology that the landmarks lie on; they are carried to the mesh
+    balls: x y z radius each, mm
+    cylinders, capsules: x y z of one end, x y z of the other, radius each, mm
+    half_spaces: x y z of a point of the plane (mm), x y z into it each
+    Parameters: solid_error (share), landmark_reach (mm).
+    """
+    return _bonetk._measure(mesh, dict(landmarks or {}), standard, balls, cylinders, capsules, half_spaces, **parameters)
+
+
+def plan(
+    mesh: DensityMesh, *, resections: Any = (), paths: Any = (), radius: float = 0.0, search: bool = False,
+    **parameters: Any,
+) -> dict[str, Any]:
+    """Resections and paths of screws, as ``bonetk plan`` writes them: a dict of measures and missing.
+
+    resections: x y z of a point of the plane (mm), x y z toward what is removed each
+    paths: x y z where it enters, x y z where it ends each, mm; radius: of all paths, mm
+    search: takes the safe path with the densest bone around it near each path given
+    Parameters: margin, shell, search_shift, search_depth (mm), search_angle (radians).
+    """
+    return _bonetk._plan(mesh, resections, paths, radius, search, **parameters)
+
+
+def evaluate(
+    mesh: DensityMesh, model: StatisticalModel, *, ct: Any = None, progress: Progress | None = None, **parameters: Any
+) -> dict[str, Any]:
+    """A subject against an atlas, as ``bonetk evaluate`` writes it: a dict of shape, density, registered and more.
+
+    ct: the subject's CT, for its density; None: the mesh's own
+    Parameters: AtlasRegistrationFilter, which brings a mesh of another topology onto the atlas'.
+    """
+    return _bonetk._evaluate(mesh, model, None if ct is None else as_image(ct), progress, **parameters)
+
+
+def export(
+    mesh: DensityMesh, law: str, path: str | os.PathLike[str] = "", *, format: str = "abaqus",
+    landmarks: Landmarks | None = None, line: tuple[float, float] | None = None, surface: Any = None, **parameters: Any,
+) -> dict[str, Any]:
+    """Finite elements with materials and sets of a model in ash or apparent density, as arrays and as a solver's file.
+
+    law: Young's modulus by density, see elasticity_laws
+    path: file to write as ``bonetk export`` does; empty: none. format: abaqus, calculix, febio, gmsh or vtk
+    landmarks: name and point (mm) each, a node set LM_NAME of the next node
+    line: intercept and slope of the law's density (g/cm3) by HU, for a model in HU
+    surface: finer DensityMesh, or points (n x 3) and triangles (t x 3), that nodes on the boundary's edges are moved onto
+    Parameters: order, bins, modulus_field (bins, cells, nodes), least_modulus (MPa), poisson_ratio.
+
+    The dict has nodes (n x 3, mm), elements (m x 10 or 4), region, modulus (MPa), mass_density (t/mm3) and material of
+    each element, node_modulus, materials, node_sets, element_sets, exterior (faces by their nodes) and more.
+    """
+    return _bonetk._export(mesh, law, dict(landmarks or {}), line, surface, os.fspath(path), format, **parameters)

@@ -16,7 +16,7 @@ _QUANTITIES = ["unknown", "hu", "k2hpo4", "ha", "ash", "apparent"]
 _VTK_TETRA = 10
 
 
-def to_vtk(mesh: DensityMesh) -> Any:
+def to_vtk(self: DensityMesh) -> Any:
     """The mesh as a vtkUnstructuredGrid with the arrays of .vtu files. A copy."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints
@@ -24,24 +24,24 @@ def to_vtk(mesh: DensityMesh) -> Any:
 
     grid = vtkUnstructuredGrid()
     points = vtkPoints()
-    points.SetData(numpy_to_vtk(mesh.points, deep=True))
+    points.SetData(numpy_to_vtk(self.points, deep=True))
     grid.SetPoints(points)
     cells = vtkCellArray()
-    count = 0 if mesh.tetrahedra is None else len(mesh.tetrahedra)
+    count = 0 if self.tetrahedra is None else len(self.tetrahedra)
     if count:
         cells.SetData(
             numpy_to_vtkIdTypeArray(np.arange(0, 4 * count + 1, 4, dtype=np.int64), deep=True),
-            numpy_to_vtkIdTypeArray(mesh.tetrahedra.astype(np.int64).ravel(), deep=True),
+            numpy_to_vtkIdTypeArray(self.tetrahedra.astype(np.int64).ravel(), deep=True),
         )
     grid.SetCells(_VTK_TETRA, cells)
     for data, names in ((grid.GetPointData(), _POINT_ARRAYS), (grid.GetCellData(), _CELL_ARRAYS)):
         for name, vtk_name in names.items():
-            values = getattr(mesh, name)
+            values = getattr(self, name)
             if values is not None:
                 array = numpy_to_vtk(values, deep=True)
                 array.SetName(vtk_name)
                 data.AddArray(array)
-    quantity = numpy_to_vtk(np.array([_QUANTITIES.index(mesh.quantity)], dtype=np.int32), deep=True)
+    quantity = numpy_to_vtk(np.array([_QUANTITIES.index(self.quantity)], dtype=np.int32), deep=True)
     quantity.SetName("DensityQuantity")
     grid.GetFieldData().AddArray(quantity)
     return grid
@@ -69,29 +69,29 @@ def from_vtk(grid: Any) -> DensityMesh:
     return DensityMesh(vtk_to_numpy(grid.GetPoints().GetData()), tetrahedra, **found)
 
 
-def to_meshio(mesh: DensityMesh) -> Any:
+def to_meshio(self: DensityMesh) -> Any:
     """The mesh as a meshio.Mesh with the arrays of .vtu files; points and tetrahedra are shared, not copied."""
     import meshio
 
     def arrays(names: dict[str, str]) -> dict[str, Any]:
-        return {vtk_name: getattr(mesh, name) for name, vtk_name in names.items() if getattr(mesh, name) is not None}
+        return {vtk_name: getattr(self, name) for name, vtk_name in names.items() if getattr(self, name) is not None}
 
     return meshio.Mesh(
-        mesh.points,
-        [("tetra", mesh.tetrahedra)],
+        self.points,
+        [("tetra", self.tetrahedra)],
         point_data=arrays(_POINT_ARRAYS),
         cell_data={name: [values] for name, values in arrays(_CELL_ARRAYS).items()},
     )
 
 
-def _repr_html(mesh: DensityMesh) -> str:
-    picture = base64.b64encode(mesh._shade(240)).decode("ascii")
+def _repr_html_(self: DensityMesh) -> str:
+    picture = base64.b64encode(self._shade(240)).decode("ascii")
     image = f'<img alt="the surface from the front" src="data:image/png;base64,{picture}">' if picture else ""
-    return f"<div>{image}<p>{html.escape(repr(mesh))}</p></div>"
+    return f"<div>{image}<p>{html.escape(repr(self))}</p></div>"
 
 
-# The methods of the class that are Python.
-DensityMesh.to_vtk = to_vtk
-DensityMesh.from_vtk = staticmethod(from_vtk)
-DensityMesh.to_meshio = to_meshio
-DensityMesh._repr_html_ = _repr_html
+# The methods of the class that are Python; assignments to methods are none for type checkers.
+for _name, _method in {
+    "to_vtk": to_vtk, "from_vtk": staticmethod(from_vtk), "to_meshio": to_meshio, "_repr_html_": _repr_html_
+}.items():
+    setattr(DensityMesh, _name, _method)

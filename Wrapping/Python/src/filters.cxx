@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "filters.h"
 
+#include "analysis.h"
 #include "bindings.h"
 
 #include <itkCommand.h>
@@ -117,14 +118,14 @@ PrepareFilter(itk::ProcessObject * filter)
 }
 
 void
-UpdateFilter(itk::ProcessObject & filter, const py::object & progress)
+RunFilter(itk::ProcessObject & filter, const py::object & progress, const std::function<void()> & run)
 {
   const itk::ProcessObject::Pointer keep(&filter);
   const ProgressListener            listener(filter, progress);
   try
   {
     const py::gil_scoped_release release;
-    filter.Update();
+    run();
   }
   catch (...)
   {
@@ -132,6 +133,12 @@ UpdateFilter(itk::ProcessObject & filter, const py::object & progress)
     throw;
   }
   RaisePending(&filter);
+}
+
+void
+UpdateFilter(itk::ProcessObject & filter, const py::object & progress)
+{
+  RunFilter(filter, progress, [&filter] { filter.Update(); });
 }
 
 void
@@ -162,8 +169,10 @@ void
 BindFilters(pybind11::module_ & m)
 {
   using namespace bone::python;
-  py::class_<itk::ProcessObject, itk::SmartPointer<itk::ProcessObject>>(
-    m, "ProcessObject", "Base of the filters: set inputs and parameters, call update(), take the output.")
+  py::class_<itk::ProcessObject, itk::SmartPointer<itk::ProcessObject>> process(
+    m, "ProcessObject", "Base of the filters: set inputs and parameters, call update(), take the output.");
+  process.attr("parameter_names") = py::tuple();
+  process
     .def("update",
          &UpdateFilter,
          py::arg("progress") = py::none(),
@@ -200,4 +209,6 @@ BindFilters(pybind11::module_ & m)
   BindAtlasFilters(m);
   BindRegistrationFilters(m);
   BindBuild(m);
+  BindAnalysis(m);
+  BindFiniteElements(m);
 }

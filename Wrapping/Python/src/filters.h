@@ -9,6 +9,8 @@
 
 #include <itkProcessObject.h>
 
+#include <functional>
+
 namespace bone::python
 {
 /** \defgroup FilterBindings Process objects as classes of Python
@@ -23,6 +25,9 @@ PrepareFilter(itk::ProcessObject * filter);
 /** Runs what is out of date, without the GIL. `progress` is called with 0 to 1 unless it is None. */
 void
 UpdateFilter(itk::ProcessObject & filter, const py::object & progress);
+/** The same of anything that runs the filter. */
+void
+RunFilter(itk::ProcessObject & filter, const py::object & progress, const std::function<void()> & run);
 /** Keeps the filter that makes an input alive as long as `filter`; ITK does not. */
 void
 HoldSource(itk::ProcessObject & filter, const std::string & input, const itk::DataObject * data);
@@ -40,6 +45,28 @@ CastData(itk::DataObject * data)
   return py::cast(itk::SmartPointer<itk::DataObject>(data));
 }
 
+/** Keeps how type stubs declare a property: "degree: int". */
+template <typename TFilter>
+void
+AddMember(FilterClass<TFilter> & filter, const char * name, const std::string & annotation, bool readOnly = false)
+{
+  filter.attr("_members")[name] = readOnly ? "-> " + annotation : annotation;
+}
+/** The name of a data object's class in Python. */
+template <typename TData>
+std::string
+NameOfClass()
+{
+  if constexpr (std::is_base_of_v<ImageBase, TData>)
+  {
+    return "Image";
+  }
+  else
+  {
+    return py::type::of<TData>().attr("__name__").template cast<std::string>();
+  }
+}
+
 template <typename TFilter>
 FilterClass<TFilter>
 AddFilter(py::module_ & m, const char * name, const char * doc)
@@ -51,6 +78,7 @@ AddFilter(py::module_ & m, const char * name, const char * doc)
     return made;
   }));
   filter.attr("parameter_names") = py::tuple();
+  filter.attr("_members") = py::dict();
   return filter;
 }
 
@@ -73,6 +101,7 @@ AddParameters(FilterClass<TFilter> & filter, TGet get, TSet set)
       },
       entries[i].help.c_str());
     names.append(entries[i].name);
+    AddMember(filter, entries[i].name.c_str(), entries[i].annotation);
   }
   filter.attr("parameter_names") = py::tuple(names);
 }
@@ -102,6 +131,7 @@ AddInput(FilterClass<TFilter> & filter, const char * name, TGet get, TSet set, c
       set(self, data);
     },
     doc);
+  AddMember(filter, name, "Optional[" + NameOfClass<TData>() + ']');
 }
 
 /** A CT or radiograph: float. */
@@ -118,6 +148,7 @@ AddImageInput(FilterClass<TFilter> & filter, const char * name, TGet get, TSet s
       set(self, image.GetPointer());
     },
     doc);
+  AddMember(filter, name, "_ImageInput");
 }
 
 /** A label map: whole numbers. */
@@ -134,6 +165,7 @@ AddLabelInput(FilterClass<TFilter> & filter, const char * name, TGet get, TSet s
       set(self, labels.GetPointer());
     },
     doc);
+  AddMember(filter, name, "_ImageInput");
 }
 
 template <typename TFilter, typename TGet>
@@ -142,6 +174,8 @@ AddOutput(FilterClass<TFilter> & filter, const char * name, TGet get, const char
 {
   filter.def_property_readonly(
     name, [get](const py::object & self) { return OutputOf(self, get(self.cast<TFilter &>())); }, doc);
+  using Data = std::remove_cv_t<std::remove_pointer_t<decltype(get(std::declval<TFilter &>()))>>;
+  AddMember(filter, name, NameOfClass<Data>(), true);
 }
 /** \} */
 

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "filters.h"
+#include "reports.h"
 
 #include "boneAtlasRegistrationFilter.h"
 #include "boneStatisticalModelEstimator.h"
@@ -72,12 +72,7 @@ BindAtlasFilters(py::module_ & m)
     [](RegistrationType & self, const Array<double> & points, const Array<IdType> & triangles) {
       TriangleSurface surface;
       surface.points = ToPoints(points, "points");
-      if (triangles.ndim() != 2 || triangles.shape(1) != 3)
-      {
-        throw UsageFailure("triangles must be an array of t x 3 ids of points");
-      }
-      const auto * first = reinterpret_cast<const std::array<IdType, 3> *>(triangles.data());
-      surface.triangles.assign(first, first + triangles.shape(0));
+      surface.triangles = ToTriangles(triangles);
       self.SetSubjectSurface(surface);
     },
     py::arg("points"),
@@ -86,5 +81,8 @@ BindAtlasFilters(py::module_ & m)
   AddParameters(filter);
   AddOutput(
     filter, "output", [](RegistrationType & self) { return self.GetOutput(); }, "DensityMesh.");
+  AddReport(filter,
+            "After an update: a dict of alignment (4 x 4, standard to subject), alignment_distance, surface_distance, "
+            "subject_distance and layer_distance (mm), mirrored, and untangling.");
 }
 } // namespace bone::python

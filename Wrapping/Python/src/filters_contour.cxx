@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "filters.h"
+#include "reports.h"
 
 #include "boneContourResampleFilter.h"
 #include "boneContourSliceFilter.h"
@@ -44,6 +44,10 @@ BindSnake(py::module_ & m)
   AddParameters(snake);
   AddOutput(
     snake, "output", [](SnakeType & self) { return self.GetOutput(); }, "ContourStack.");
+  AddReport(
+    snake,
+    "After an update: a dict of slices (dicts of height, iterations, converged, energy, support and events) and "
+    "warnings.");
   snake.def_property_readonly("warnings", &SnakeType::GetWarnings, "What a person should know, after an update.");
 }
 } // namespace
@@ -56,10 +60,13 @@ BindContourFilters(py::module_ & m)
     m,
     "ContourSliceFilter",
     "Keeps the slices of a stack from which the others are best interpolated. Input: contours. Output: ContourStack.");
-  AddContourFilter<ContourResampleFilter>(
+  auto resample = AddContourFilter<ContourResampleFilter>(
     m,
     "ContourResampleFilter",
-    "Fits closed cubic B-splines to contours and samples them by curvature. Input: contours. Output: ContourStack.")
+    "Fits closed cubic B-splines to contours and samples them by curvature. Input: contours. Output: ContourStack.");
+  AddReport(resample,
+            "After an update: a dict of samples, moved, near, refined and unfitted (numbers), and largest_error (mm).");
+  resample
     .def_property_readonly(
       "spacing_scale", &ContourResampleFilter::GetSpacingScale, "Factor of all spacings, after an update.")
     .def_property_readonly(
@@ -77,5 +84,8 @@ BindContourFilters(py::module_ & m)
   AddParameters(tiling);
   AddOutput(
     tiling, "output", [](TilingType & self) { return self.GetOutput(); }, "DensityMesh without density.");
+  AddReport(tiling,
+            "After an update: a dict of numbers, as of sections, slabs, branchings, caps and flat_cuts, and notes, the "
+            "places behind them.");
 }
 } // namespace bone::python

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "filters.h"
+#include "reports.h"
 
 #include "boneDensityCalibrationFilter.h"
 #include "boneDensityFitFilter.h"
@@ -32,6 +32,10 @@ BindFit(py::module_ & m)
   AddParameters(fit);
   AddOutput(
     fit, "output", [](FitType & self) { return self.GetOutput(); }, "DensityMesh.");
+  AddReport(
+    fit,
+    "After an update: a dict of samples, outside, finite, voxels, and the numbers of sparse, unsupported and limited "
+    "tetrahedra; overshoot_median, overshoot_90 and overshoot_maximum in ranges of a tetrahedron's data.");
   fit.def_property_readonly("outside_fraction",
                             &FitType::GetOutsideFraction,
                             "Share of the samples that lay beyond the image, after an update.");
@@ -76,6 +80,15 @@ BindRaster(py::module_ & m)
     },
     "Image whose grid is taken.");
   AddParameters(raster);
+  // Any number, as in C++; NaN lies in no range.
+  const std::string help = raster.attr("outside_value").attr("__doc__").cast<std::string>();
+  raster.def_property(
+    "outside_value",
+    &RasterType::GetOutsideValue,
+    [](RasterType & self, const py::object & value) {
+      self.SetOutsideValue(ToReal(value, { "outsideValue", "OutsideValue", ParameterRange::Any(), "", "", "" }));
+    },
+    (help + " It may be NaN.").c_str());
   AddOutput(
     raster, "output", [](RasterType & self) { return self.GetOutput(); }, "Image, float32.");
 }

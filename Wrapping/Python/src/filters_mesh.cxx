@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "filters.h"
+#include "reports.h"
 
 #include "boneHierarchyLevelFilter.h"
 #include "boneMeshQualityFilter.h"
@@ -39,12 +39,20 @@ BindMeshFilters(py::module_ & m)
     "Inputs: mesh; contours, optional, what it was tiled from; labels, optional, the bone as voxels.");
   AddInput<ContourStack>(quality, "contours", BONE_PYTHON_INPUT(QualityType, Contours), "ContourStack; optional.");
   AddLabelInput(quality, "labels", BONE_PYTHON_INPUT(QualityType, LabelImage), "Label map; optional.");
-  AddMeshFilter<TetraSmoothingFilter<Mesh>>(
+  AddReport(
+    quality,
+    "After an update: a dict of smoothing (see TetraSmoothingFilter.report) and numbers of flips, repairs, splits, "
+    "collapses, contour_flips, sharp_edges and points optimized.");
+  auto smoothing = AddMeshFilter<TetraSmoothingFilter<Mesh>>(
     m,
     "TetraSmoothingFilter",
     "Smooths a layered tetrahedral mesh without shrinking it, inverting cells or mixing layers. Input: mesh.");
-  AddMeshFilter<TetraSwapFilter<Mesh>>(
+  AddReport(
+    smoothing,
+    "After an update: a dict of moves, weighted, and refused, points left where they were by reason (numbers).");
+  auto swap = AddMeshFilter<TetraSwapFilter<Mesh>>(
     m, "TetraSwapFilter", "Swaps faces and edges where that makes the worst cells better. Input: mesh.");
+  AddReport(swap, "After an update: a dict of swaps done, and refused by reason (numbers).");
 
   auto collapse = AddFilter<CollapseType>(
     m,
@@ -54,6 +62,10 @@ BindMeshFilters(py::module_ & m)
   AddParameters(collapse);
   AddOutput(
     collapse, "output", [](CollapseType & self) { return self.GetOutput(); }, "DensityHierarchy.");
+  AddReport(collapse,
+            "After an update: for each level after the first a dict of collapses, refused by reason (numbers) and "
+            "cell_error (density "
+            "units).");
 
   auto level = AddFilter<HierarchyLevelFilter>(
     m, "HierarchyLevelFilter", "Hands one level of a hierarchy on as a mesh. Input: hierarchy.");

@@ -1,7 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "filters.h"
+#include "reports.h"
 
 #include "boneAtlasVolumeRegistration.h"
 #include "boneDeformableRadiographRegistration.h"
@@ -242,6 +242,10 @@ BindPreprocess(py::module_ & m)
     filter, "output", [](PreprocessType & self) { return self.GetOutput(); }, "Image: line integrals.");
   AddOutput(
     filter, "weights", [](PreprocessType & self) { return self.GetWeights(); }, "Image: 0 to 1.");
+  AddReport(
+    filter,
+    "After an update: a dict of open_beam, air_share, collimator (edges by normal and offset, pixels), dead_pixels, "
+    "saturated, used_share, scatter_to_primary and more.");
 }
 } // namespace
 

@@ -84,6 +84,6 @@ PYBIND11_MODULE(_bonetk, m)
   BindImages(m);
   BindMesh(m);
   BindModels(m);
-  BindFilters(m);
   BindRadiograph(m);
+  BindFilters(m);
 }

@@ -79,6 +79,17 @@ ToPoints(const Array<double> & array, const char * name)
   return { first, first + array.shape(0) };
 }
 
+std::vector<std::array<IdType, 3>>
+ToTriangles(const Array<IdType> & array)
+{
+  if (array.ndim() != 2 || array.shape(1) != 3)
+  {
+    throw UsageFailure("triangles must be an array of t x 3 ids of points");
+  }
+  const auto * first = reinterpret_cast<const std::array<IdType, 3> *>(array.data());
+  return { first, first + array.shape(0) };
+}
+
 py::array_t<double>
 FromPoints(const std::vector<Vector3> & points)
 {

@@ -16,6 +16,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,9 @@ View(const T * data, std::vector<py::ssize_t> shape, const py::object & owner)
 /** n x 3 numbers as points, and back as a copy. Throws UsageFailure for another shape. */
 std::vector<Vector3>
 ToPoints(const Array<double> & array, const char * name);
+/** t x 3 ids of points. Throws UsageFailure for another shape. */
+std::vector<std::array<IdType, 3>>
+ToTriangles(const Array<IdType> & array);
 py::array_t<double>
 FromPoints(const std::vector<Vector3> & points);
 Vector3

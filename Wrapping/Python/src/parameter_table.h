@@ -130,11 +130,36 @@ ChoicesOf(const T &)
   return list;
 }
 
-/** A parameter of a table: its name in Python and what help() says. */
+/** How type stubs name the parameter's type (see generate_stubs.py). */
+template <typename T>
+std::string
+AnnotationOf()
+{
+  if constexpr (std::is_enum_v<T>)
+  {
+    std::string names;
+    for (const char * name : ParameterChoices<T>::names)
+    {
+      names += (names.empty() ? "\"" : ", \"") + std::string(name) + '"';
+    }
+    return "Literal[" + names + ']';
+  }
+  else if constexpr (IsVector<T>::value)
+  {
+    return "_List[" + AnnotationOf<typename T::value_type>() + ']';
+  }
+  else
+  {
+    return std::is_same_v<T, bool> ? "bool" : std::is_integral_v<T> ? "int" : "float";
+  }
+}
+
+/** A parameter of a table: its name in Python, what help() says, and its type. */
 struct ParameterEntry
 {
   std::string name;
   std::string help;
+  std::string annotation;
 };
 template <typename TStruct>
 std::vector<ParameterEntry>
@@ -145,8 +170,9 @@ ListParameters()
   TStruct::Visit(initial, [&entries](const ParameterField & field, const auto & value) {
     using T = std::decay_t<decltype(value)>;
     constexpr bool number = !std::is_enum_v<T> && !std::is_same_v<T, bool>;
-    entries.push_back(
-      { SnakeCase(field.member), DescribeParameter(field, ParameterText(value), ChoicesOf(value), number) });
+    entries.push_back({ SnakeCase(field.member),
+                        DescribeParameter(field, ParameterText(value), ChoicesOf(value), number),
+                        AnnotationOf<T>() });
   });
   return entries;
 }
@@ -204,6 +230,22 @@ SetParameterByName(TStruct & parameters, const std::string & name, const py::han
     }
   }
   return false;
+}
+/** The parameters with those that keywords name. Throws UsageFailure for one that `what` does not have. */
+template <typename TStruct>
+TStruct
+ReadParameters(const py::kwargs & keywords, const char * what)
+{
+  TStruct parameters;
+  for (const auto & item : keywords)
+  {
+    const auto name = item.first.cast<std::string>();
+    if (!SetParameterByName(parameters, name, item.second))
+    {
+      throw UsageFailure(std::string(what) + " has no parameter \"" + name + '"');
+    }
+  }
+  return parameters;
 }
 /** \} */
 } // namespace bone::python

@@ -1,9 +1,12 @@
 """Small bodies with known densities, for tests."""
 import itertools
+import os
 
 import numpy as np
 
 import bonetk
+
+SANITIZED = "libasan" in os.environ.get("LD_PRELOAD", "")
 
 # Six tetrahedra of a cube about its diagonal 0-7; corner bit 0 is x, 1 is y, 2 is z.
 _CUBE = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
