@@ -148,7 +148,7 @@ class BadUsage(TestCase):
 
     def test_zeros_before_a_number_are_nothing(self):
         for subject in ("010", "10"):
-            self.succeed("phantom", "--spacing", 4, "--noise", 10, "--subject", subject, "-o", f"p{subject}.mha")
+            self.succeed("phantom", "--noise", 10, "--subject", subject, "-o", f"p{subject}.mha")
         with open("p010.mha", "rb") as a, open("p10.mha", "rb") as b:
             self.assertEqual(a.read(), b.read())
         self.succeed("phantom", "--spacing", "08", "--subject", "008", "-o", "p008.mha")

@@ -1,6 +1,7 @@
 """What the integration tests share: running bonetk, small inputs, and the rules that every command keeps."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,23 @@ def read_json(path):
 def write_json(content, path):
     with open(path, "w") as file:
         json.dump(content, file)
+
+
+PHANTOMS = tempfile.TemporaryDirectory()  # of this process, by options
+
+
+def phantom(*options, ct="ct.nii.gz", labels="l.nii.gz"):
+    """Puts a phantom's CT and label map into the present folder. Each is made once in a process."""
+    options = [str(option) for option in options]
+    files = {name: kind + name[name.index("."):] for name, kind in ((ct, "ct"), (labels, "labels"))}
+    made = os.path.join(PHANTOMS.name, " ".join([*options, *files.values()]))
+    if not os.path.exists(made):
+        os.mkdir(made)
+        ct_made, labels_made = (os.path.join(made, kept) for kept in files.values())
+        code, out, err = bonetk("phantom", *options, "-o", ct_made, "--labels", labels_made)
+        assert code == 0, out + err
+    for name, kept in files.items():
+        shutil.copyfile(os.path.join(made, kept), name)
 
 
 class TestCase(unittest.TestCase):

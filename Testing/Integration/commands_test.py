@@ -7,7 +7,7 @@ import re
 import numpy
 import nibabel
 
-from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, phantom, read_json, run, write_json
 
 GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detectorU": [1, 0, 0],
             "detectorV": [0, 0, -1], "size": [64, 80], "spacing": [4, 4]}
@@ -15,7 +15,7 @@ GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detec
 
 class Commands(TestCase):
     def test_stage_by_stage(self):
-        self.succeed("phantom", "--bone", "femur", "--spacing", 2, "--noise", 10, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--bone", "femur", "--spacing", 2, "--noise", 10)
         labels = numpy.asarray(nibabel.load("l.nii.gz").dataobj)
         self.assertEqual(sorted(numpy.unique(labels)), [0, 1, 2, 3])
         _, err = self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 7,
@@ -89,7 +89,7 @@ class Commands(TestCase):
 
     def test_density(self):
         """Fits with their options, calibration, voxels and profiles."""
-        self.succeed("phantom", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--spacing", 2)
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 8, "--contour-spacing", 8, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
         self.succeed("fit", "ct.nii.gz", "m.vtu", "--degree", 3, "-o", "d.vtu", "--report", "linear.json")
@@ -131,7 +131,7 @@ class Commands(TestCase):
 
     def test_compact(self):
         """Compact files are smaller, are read by every command, and are as near to the exact ones as they say."""
-        self.succeed("phantom", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--spacing", 2)
         self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "-o", "exact")
         self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "--compact", "--compact-error", 3, "-o",
                      "compact")
@@ -159,7 +159,7 @@ class Commands(TestCase):
         self.refuse("build", "ct.nii.gz", "--labels", "l.nii.gz", "--continuous", "--max-error", 5, "-o", "x", code=2)
 
     def test_hemipelvis_branches(self):
-        self.succeed("phantom", "--bone", "hemipelvis", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--bone", "hemipelvis", "--subject", 0, "--spacing", 2)
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
         self.succeed("validate", "m.vtu")
@@ -177,7 +177,7 @@ class Commands(TestCase):
 
     def test_initial_contours_alone(self):
         """A person draws one contour; the others follow from slice to slice."""
-        self.succeed("phantom", "--spacing", 1.5, "-o", "ct.nii.gz")
+        phantom("--spacing", 1.5)
         angle = numpy.linspace(0, 2 * numpy.pi, 24, endpoint=False)
         points = [{"position": [17 * numpy.cos(a), 3 + 17 * numpy.sin(a), -100.5]} for a in angle]
         markup = {"markups": [{"type": "ClosedCurve", "coordinateSystem": "LPS", "controlPoints": points}]}
@@ -189,7 +189,7 @@ class Commands(TestCase):
 
     def test_label_map_of_a_few_slices(self):
         """With --follow, the bone is followed from the slices that are marked to those that are not."""
-        self.succeed("phantom", "--spacing", 1.5, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--spacing", 1.5)
         whole = nibabel.load("l.nii.gz")
         few = numpy.asarray(whole.dataobj).copy()
         marked = [few.shape[2] // 8, few.shape[2] // 3]
@@ -207,8 +207,7 @@ class Commands(TestCase):
         """Three subjects, each on its own mesh: one is the standard model, the others are registered."""
         lines = []
         for subject in range(3):
-            self.succeed("phantom", "--bone", "hemipelvis", "--subject", subject, "--spacing", 2, "-o", f"ct{subject}.nii.gz",
-                         "--labels", "l.nii.gz")
+            phantom("--bone", "hemipelvis", "--subject", subject, "--spacing", 2, ct=f"ct{subject}.nii.gz")
             self.succeed("contours", f"ct{subject}.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8,
                          "-o", "c.vtp")
             self.succeed("mesh", "c.vtp", "-o", "m.vtu")

@@ -7,13 +7,13 @@ import subprocess
 
 import numpy
 
-from bonetk_testing import BONETK, TestCase, main, write_image, write_json
+from bonetk_testing import BONETK, TestCase, main, phantom, write_image, write_json
 
 
 class Damaged(TestCase):
     def setUp(self):
         super().setUp()
-        self.succeed("phantom", "--spacing", 3, "-o", "ct.mha", "--labels", "l.nii.gz")
+        phantom("--spacing", 3, ct="ct.mha")
         self.contours = ["contours", "ct.mha", "--labels", "l.nii.gz", "--slice-step", 6]
 
     def mesh(self):
@@ -170,7 +170,7 @@ class Damaged(TestCase):
 class Outputs(TestCase):
     def setUp(self):
         super().setUp()
-        self.succeed("phantom", "--spacing", 3, "-o", "ct.mha", "--labels", "l.nii.gz")
+        phantom("--spacing", 3, ct="ct.mha")
         self.contours = ["contours", "ct.mha", "--labels", "l.nii.gz", "--slice-step", 6]
 
     def test_several_outputs_appear_together_or_not_at_all(self):

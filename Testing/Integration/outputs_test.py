@@ -5,8 +5,9 @@ import resource
 import shutil
 import signal
 import subprocess
+import time
 
-from bonetk_testing import BONETK, TestCase, bonetk, main
+from bonetk_testing import BONETK, TestCase, bonetk, main, phantom
 
 BUILD = ["--labels", "l.nii.gz", "--tetrahedra", "4000", "--degree", "2"]
 
@@ -14,7 +15,7 @@ BUILD = ["--labels", "l.nii.gz", "--tetrahedra", "4000", "--degree", "2"]
 class Outputs(TestCase):
     def setUp(self):
         super().setUp()
-        self.succeed("phantom", "--spacing", 2, "--noise", 15, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--spacing", 2, "--noise", 15)
 
     def contents(self, folder):
         """Bytes by file name; the report without the times it took."""
@@ -87,7 +88,7 @@ class Outputs(TestCase):
             self.remove(output)
             process = subprocess.Popen([BONETK] + command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             while process.poll() is None and self.new_files(before) < files:
-                pass
+                time.sleep(0.0005)
             process.send_signal(number)
             got = process.wait(60)
             codes.append(got)
@@ -115,7 +116,7 @@ class Outputs(TestCase):
 
     def test_full_disk(self):
         for name in ("x.nii.gz", "x.nii", "x.mha", "x.mhd", "x.nrrd"):
-            self.full_disk(20000, "phantom", "--spacing", 2, "-o", name)
+            self.full_disk(20000, "phantom", "-o", name)
         self.full_disk(20000, "build", "ct.nii.gz", *BUILD, "-o", "out")
         self.full_disk(200000, "build", "ct.nii.gz", *BUILD, "-o", "out")
         self.full_disk(2000, "contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "-o", "c.vtp")

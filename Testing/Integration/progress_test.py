@@ -10,7 +10,7 @@ import subprocess
 import threading
 import time
 
-from bonetk_testing import BONETK, TestCase, bonetk, main
+from bonetk_testing import BONETK, TestCase, bonetk, main, phantom
 
 BUILD = ["build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", "3000", "-o", "out"]
 
@@ -23,7 +23,7 @@ def lines_of(path):
 class Progress(TestCase):
     def setUp(self):
         super().setUp()
-        self.succeed("phantom", "--spacing", 2, "-o", "ct.nii.gz", "--labels", "l.nii.gz")
+        phantom("--spacing", 2)
 
     def check(self, lines, code):
         """Of the lines of any run: what each has, and that nothing falls or comes twice."""
@@ -60,7 +60,7 @@ class Progress(TestCase):
         far = max(abs(line["share"] - line["seconds"] / last["seconds"]) for line in lines)
         self.assertLess(far, 0.35)
         self.assertGreater(len({line["share"] for line in lines}), 0.4 * len(lines))
-        self.succeed("phantom", "--spacing", 4, "-o", "p.mha", "--status", "s.jsonl")  # one of an earlier run is replaced
+        self.succeed("phantom", "-o", "p.mha", "--status", "s.jsonl")  # one of an earlier run is replaced
         self.check(lines_of("s.jsonl"), 0)
         self.assertEqual(sorted(os.listdir()), ["ct.nii.gz", "l.nii.gz", "out", "p.mha", "s.jsonl"])
 
@@ -124,14 +124,14 @@ class Progress(TestCase):
     def test_readers_that_go_or_sleep(self):
         reader, writer = os.pipe()
         os.close(reader)
-        code, _, err = bonetk("phantom", "--spacing", 4, "-o", "p.mha", "--status", f"/dev/fd/{writer}", pass_fds=[writer])
+        code, _, err = bonetk("phantom", "-o", "p.mha", "--status", f"/dev/fd/{writer}", pass_fds=[writer])
         self.assertEqual((code, err), (0, ""))
         os.close(writer)
 
         reader, writer = os.pipe()
         size = fcntl.fcntl(writer, 1032)  # F_GETPIPE_SZ: a full pipe takes no line
         os.write(writer, b" " * size)
-        process = subprocess.Popen([BONETK, "phantom", "--spacing", "4", "-o", "q.mha", "--status", f"/dev/fd/{writer}"],
+        process = subprocess.Popen([BONETK, "phantom", "-o", "q.mha", "--status", f"/dev/fd/{writer}"],
                                    pass_fds=[writer])
         time.sleep(0.5)
         self.assertIsNone(process.poll())
@@ -140,20 +140,19 @@ class Progress(TestCase):
         self.assertNotIn("q.mha", os.listdir())
 
     def test_status_files_that_are_refused(self):
-        phantom = ["phantom", "--spacing", 4]
         os.mkdir("folder")
         for path, says in (("nowhere/s.jsonl", "No such file"), ("folder", "folder"), ("ct.nii.gz", "no status file"),
                            ("/dev/full", "No space left"), ("/dev/fd/57", "Bad file descriptor"),
                            ("p.mha", "output"), ("./folder/../p.mha", "output"), ("p.txt", "output")):
-            self.refuse_usage(*phantom, "-o", "p.mha", "--status", path, says=says)
+            self.refuse_usage("phantom", "-o", "p.mha", "--status", path, says=says)
         os.mkdir("out")
         self.refuse_usage(*BUILD, "--status", "out/report.json", says="output")
         self.refuse_usage("simplify", "m.vtu", "-o", "m", "--status", "m_L1.vtu", says="output")
-        self.succeed(*phantom, "-o", "p.mha", "--status", "p.jsonl")
+        self.succeed("phantom", "-o", "p.mha", "--status", "p.jsonl")
         self.check(lines_of("p.jsonl"), 0)
         with open("precious.txt", "w") as file:
             file.write("mine")
-        self.refuse_usage(*phantom, "-o", "p.mha", "--status", "precious.txt", says="no status file")
+        self.refuse_usage("phantom", "-o", "p.mha", "--status", "precious.txt", says="no status file")
         with open("precious.txt") as file:
             self.assertEqual(file.read(), "mine")
 
