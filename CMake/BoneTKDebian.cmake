@@ -68,5 +68,6 @@ if(TARGET bonePython)
 atlases and filters on NumPy arrays.")
 endif()
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS bonetk-doc)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "bonetk-doc, python3-nibabel, python3-vtk9")
 
 include(CPack)
