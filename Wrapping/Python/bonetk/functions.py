@@ -5,8 +5,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Union
 
-import numpy as np
-
 from . import _bonetk
 from ._bonetk import (
     ContourStack,
@@ -21,6 +19,7 @@ from ._bonetk import (
 from .images import as_image
 
 if TYPE_CHECKING:
+    import numpy as np
     import numpy.typing as npt
 
 Progress = Callable[[float], object]
@@ -245,8 +244,8 @@ Views = Sequence[Union[tuple[Any, XRayGeometry], tuple[Any, XRayGeometry, Any]]]
 
 def _set_views(f: Any, views: Views, initial_transform: Any) -> None:
     for index, (radiograph, *others) in enumerate(views):
-        if isinstance(radiograph, np.ndarray) and radiograph.ndim == 2:
-            radiograph = radiograph[np.newaxis]
+        if not isinstance(radiograph, Image) and getattr(radiograph, "ndim", 3) == 2:
+            radiograph = radiograph[None]
         f.set_view(index, radiograph, *others)
     if initial_transform is not None:
         f.set_initial_transform(initial_transform)

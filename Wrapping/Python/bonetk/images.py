@@ -4,10 +4,9 @@ from __future__ import annotations
 import os
 from typing import Any
 
-import numpy as np
-
 from ._bonetk import Image, UsageError, _read_ct, _read_labels, write_image
 
+# NumPy is imported where it is needed: commands and builds of files do without its 20 MB.
 __all__ = ["Image", "as_image", "read_image", "write_image"]
 
 
@@ -33,12 +32,14 @@ def as_image(image: Any, *, labels: bool = False) -> Image:
         return image
     if isinstance(image, (str, os.PathLike)):
         return read_image(image, labels=labels)
-    if isinstance(image, np.ndarray):
-        return Image(image)
     if hasattr(image, "affine") and hasattr(image, "dataobj"):
         return _from_nibabel(image)
     if hasattr(image, "GetOrigin") and hasattr(image, "GetSpacing") and hasattr(image, "GetDirection"):
         return _from_itk(image)
+    import numpy as np
+
+    if isinstance(image, np.ndarray):
+        return Image(image)
     raise UsageError(
         f"{type(image).__name__} is no image: give a bonetk.Image, a path, an array [z, y, x], or an image of nibabel, itk "
         "or SimpleITK"
@@ -46,6 +47,8 @@ def as_image(image: Any, *, labels: bool = False) -> Image:
 
 
 def _from_nibabel(image: Any) -> Image:
+    import numpy as np
+
     affine = np.diag([-1.0, -1.0, 1.0, 1.0]) @ np.asarray(image.affine, dtype=float)
     spacing = np.linalg.norm(affine[:3, :3], axis=0)
     voxels = np.asanyarray(image.dataobj)
@@ -55,6 +58,8 @@ def _from_nibabel(image: Any) -> Image:
 
 
 def _from_itk(image: Any) -> Image:
+    import numpy as np
+
     module = type(image).__module__
     if module.split(".")[0] == "SimpleITK":
         import SimpleITK

@@ -5,8 +5,6 @@ import base64
 import html
 from typing import Any
 
-import numpy as np
-
 from ._bonetk import DensityMesh, UsageError
 
 # Names of the arrays in .vtu files, of points and of cells.
@@ -18,6 +16,7 @@ _VTK_TETRA = 10
 
 def to_vtk(self: DensityMesh) -> Any:
     """The mesh as a vtkUnstructuredGrid with the arrays of .vtu files. A copy."""
+    import numpy as np
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
@@ -49,6 +48,7 @@ def to_vtk(self: DensityMesh) -> Any:
 
 def from_vtk(grid: Any) -> DensityMesh:
     """The mesh of a vtkUnstructuredGrid of linear tetrahedra, with those of the arrays of .vtu files that it has."""
+    import numpy as np
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     types = vtk_to_numpy(grid.GetCellTypesArray()) if grid.GetNumberOfCells() else np.zeros(0)

@@ -236,7 +236,7 @@ BindGeometry(py::module_ & m)
                 py::arg("secondary") = 0.0,
                 py::kw_only(),
                 py::arg("size") = std::array<int, 2>{ { 512, 512 } },
-                py::arg("spacing") = Vector2(1, 1),
+                py::arg("spacing") = py::make_tuple(1.0, 1.0),
                 py::arg("isocenter") = py::make_tuple(0, 0, 0),
                 py::arg("source_to_isocenter") = 700.0,
                 py::arg("source_to_detector") = 1000.0,

@@ -303,8 +303,8 @@ BindModel(py::module_ & m)
         const py::gil_scoped_release release;
         return MakeMesh(self.Synthesize(shape, density));
       },
-      py::arg("shape") = Eigen::VectorXd(),
-      py::arg("density") = Eigen::VectorXd(),
+      py::arg("shape") = py::tuple(),
+      py::arg("density") = py::tuple(),
       "The mesh of coefficients in standard deviations; those that are not given are 0.")
     .def("__repr__", [](const StatisticalModel & self) {
       const auto & content = self.GetContent();

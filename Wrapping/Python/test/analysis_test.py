@@ -35,10 +35,10 @@ class InFolder(unittest.TestCase):
 
 class SameFigures(InFolder):
     def test_measure(self):
-        bonetk.commands.measure("m.vtu", landmarks="l.mrk.json", ball=BALLS, capsule=[(5, 5, 5, 20, 15, 25, 3)],
+        bonetk.commands.measure("m.vtu", landmarks="l.mrk.json", ball=BALLS, capsule=[(5, 5, 5, 20, 15, 25, 4)],
                                 cylinder=[(5, 5, 5, 20, 15, 25, 3)], half_space=HALF_SPACE, solid_error=1, no_page=True,
                                 output="m.json")  # 1 %
-        report = bonetk.measure(self.mesh, LANDMARKS, balls=BALLS, capsules=[(5, 5, 5, 20, 15, 25, 3)],
+        report = bonetk.measure(self.mesh, LANDMARKS, balls=BALLS, capsules=[(5, 5, 5, 20, 15, 25, 4)],
                                 cylinders=[(5, 5, 5, 20, 15, 25, 3)], half_spaces=HALF_SPACE, solid_error=0.01)
         self.same(report, "m.json")
         values = {measure["name"]: measure["value"] for measure in report["measures"]}
@@ -91,10 +91,10 @@ class SameFigures(InFolder):
 
     def test_export(self):
         line = (0, 0.002)
-        bonetk.commands.export("m.vtu", format="calculix", law="keyak1998", line=line, landmarks="l.mrk.json", bins=5,
-                               no_page=True, output="c.inp")
-        model = bonetk.export(self.mesh, "keyak1998", "p.inp", format="calculix", line=line, landmarks=LANDMARKS, bins=5)
-        with open("c.inp") as one, open("p.inp") as other:
+        bonetk.commands.export("m.vtu", format="gmsh", law="keyak1998", line=line, landmarks="l.mrk.json", bins=5,
+                               no_page=True, output="c.msh")
+        model = bonetk.export(self.mesh, "keyak1998", "p.msh", format="gmsh", line=line, landmarks=LANDMARKS, bins=5)
+        with open("c.msh") as one, open("p.msh") as other:
             self.assertEqual(one.read(), other.read())
         self.assertEqual(model["elements"].shape, (162, 10))
         np.testing.assert_array_equal(model["elements"][:, :4], self.mesh.tetrahedra)

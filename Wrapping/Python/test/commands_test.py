@@ -375,6 +375,10 @@ class Import(TestCase):
 
         self.assertLess(min(seconds("import bonetk") for _ in range(3)) - seconds("pass"), 0.2)
 
+    def test_import_leaves_numpy_alone(self):
+        """Its 20 MB are for those who work with arrays."""
+        subprocess.run([sys.executable, "-c", "import bonetk, sys; assert 'numpy' not in sys.modules"], check=True)
+
     def test_what_is_exported(self):
         modules = {"functions", "images", "interop"}
         self.assertEqual(set(bonetk.__all__), {name for name in dir(bonetk) if name[0] != "_"} - modules | {"__version__"})

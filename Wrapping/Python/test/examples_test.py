@@ -23,7 +23,7 @@ class Examples(unittest.TestCase):
         return done.stdout
 
     def test_density_along_screw(self):
-        text = self.run_example("density_along_screw.py", "--spacing", 2, "--tetrahedra", 4000)
+        text = self.run_example("density_along_screw.py", "--spacing", 3, "--tetrahedra", 3000)
         length, density, difference = map(float, re.search(
             r"([\d.]+) mm of .* density (\d+) HU\n.*: (\d+) HU", text).groups())
         self.assertGreater(length, 85)
