@@ -42,16 +42,21 @@ def write_json(content, path):
 PHANTOMS = tempfile.TemporaryDirectory()  # of this process, by options
 
 
-def phantom(*options, ct="ct.nii.gz", labels="l.nii.gz"):
-    """Puts a phantom's CT and label map into the present folder. Each is made once in a process."""
+def phantom(*options, ct="ct.nii.gz", labels="l.nii.gz", every=1):
+    """Puts a phantom's CT and label map into the present folder, as NIfTI with every so many voxels along each axis: fine
+    phantoms are made sooner than coarse ones. Each is made once in a process."""
     options = [str(option) for option in options]
     files = {name: kind + name[name.index("."):] for name, kind in ((ct, "ct"), (labels, "labels"))}
-    made = os.path.join(PHANTOMS.name, " ".join([*options, *files.values()]))
+    made = os.path.join(PHANTOMS.name, " ".join([*options, str(every), *files.values()]))
     if not os.path.exists(made):
         os.mkdir(made)
-        ct_made, labels_made = (os.path.join(made, kept) for kept in files.values())
-        code, out, err = bonetk("phantom", *options, "-o", ct_made, "--labels", labels_made)
+        paths = [os.path.join(made, kept) for kept in files.values()]
+        code, out, err = bonetk("phantom", *options, "-o", paths[0], "--labels", paths[1])
         assert code == 0, out + err
+        for path in paths if every > 1 else ():
+            image = nibabel.load(path)
+            sliced = image.slicer[::every, ::every, ::every]
+            nibabel.save(nibabel.Nifti1Image(numpy.asarray(sliced.dataobj), sliced.affine, sliced.header), path)
     for name, kept in files.items():
         shutil.copyfile(os.path.join(made, kept), name)
 

@@ -15,7 +15,7 @@ GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detec
 
 class Commands(TestCase):
     def test_stage_by_stage(self):
-        phantom("--bone", "femur", "--spacing", 2, "--noise", 10)
+        phantom("--bone", "femur", "--noise", 10, every=2)
         labels = numpy.asarray(nibabel.load("l.nii.gz").dataobj)
         self.assertEqual(sorted(numpy.unique(labels)), [0, 1, 2, 3])
         _, err = self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 7,
@@ -131,7 +131,7 @@ class Commands(TestCase):
 
     def test_compact(self):
         """Compact files are smaller, are read by every command, and are as near to the exact ones as they say."""
-        phantom("--spacing", 2)
+        phantom(every=2)
         self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "-o", "exact")
         self.succeed("build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "--compact", "--compact-error", 3, "-o",
                      "compact")
@@ -159,7 +159,7 @@ class Commands(TestCase):
         self.refuse("build", "ct.nii.gz", "--labels", "l.nii.gz", "--continuous", "--max-error", 5, "-o", "x", code=2)
 
     def test_hemipelvis_branches(self):
-        phantom("--bone", "hemipelvis", "--subject", 0, "--spacing", 2)
+        phantom("--bone", "hemipelvis", "--subject", 0, every=2)
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "-o", "c.vtp")
         self.succeed("mesh", "c.vtp", "-o", "m.vtu")
         self.succeed("validate", "m.vtu")
@@ -207,7 +207,7 @@ class Commands(TestCase):
         """Three subjects, each on its own mesh: one is the standard model, the others are registered."""
         lines = []
         for subject in range(3):
-            phantom("--bone", "hemipelvis", "--subject", subject, "--spacing", 2, ct=f"ct{subject}.nii.gz")
+            phantom("--bone", "hemipelvis", "--subject", subject, ct=f"ct{subject}.nii.gz", every=2)
             self.succeed("contours", f"ct{subject}.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8,
                          "-o", "c.vtp")
             self.succeed("mesh", "c.vtp", "-o", "m.vtu")

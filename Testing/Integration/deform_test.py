@@ -76,7 +76,7 @@ class Deform(TestCase):
         before = os.getcwd()
         os.chdir(cls.common.name)
         try:
-            for command in (["phantom", "--bone", "hemipelvis", "--spacing", 3, "-o", "ct.mha", "--labels", "l.mha"],
+            for command in (["phantom", "--bone", "hemipelvis", "-o", "ct.mha", "--labels", "l.mha"],
                             ["contours", "ct.mha", "--labels", "l.mha", "--slice-step", 10, "--contour-spacing", 12, "-o",
                              "c.vtp"],
                             ["mesh", "c.vtp", "-o", "plain.vtu"],

@@ -15,7 +15,7 @@ BUILD = ["--labels", "l.nii.gz", "--tetrahedra", "4000", "--degree", "2"]
 class Outputs(TestCase):
     def setUp(self):
         super().setUp()
-        phantom("--spacing", 2, "--noise", 15)
+        phantom("--noise", 15, every=2)
 
     def contents(self, folder):
         """Bytes by file name; the report without the times it took."""

@@ -23,7 +23,7 @@ def lines_of(path):
 class Progress(TestCase):
     def setUp(self):
         super().setUp()
-        phantom("--spacing", 2)
+        phantom(every=2)
 
     def check(self, lines, code):
         """Of the lines of any run: what each has, and that nothing falls or comes twice."""

@@ -6,7 +6,7 @@ import tempfile
 import nibabel
 import numpy
 
-from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_image
+from bonetk_testing import EXAMPLES, TestCase, bonetk, main, phantom, read_json, run, write_image
 from deform_test import SIZES, points, write_subject
 
 FAST = ["--hypotheses", 50000, "--smooth-modes", 60]
@@ -29,10 +29,9 @@ class Volume(TestCase):
         before = os.getcwd()
         os.chdir(cls.common.name)
         try:
-            for command in (["phantom", "--bone", "hemipelvis", "--spacing", 2, "--noise", 20, "-o", "ct.nii.gz", "--labels",
-                             "l.nii.gz"],
-                            ["phantom", "--bone", "femur", "--spacing", 2, "-o", "femur.nii.gz"],
-                            ["contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8, "-o",
+            phantom("--bone", "femur", ct="femur.nii.gz", every=2)
+            phantom("--bone", "hemipelvis", "--spacing", 2, "--noise", 20)
+            for command in (["contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8, "-o",
                              "c.vtp"],
                             ["mesh", "c.vtp", "-o", "plain.vtu"],
                             ["fit", "ct.nii.gz", "plain.vtu", "--degree", 1, "-o", "bone.vtu"]):
