@@ -26,10 +26,10 @@ class Examples(unittest.TestCase):
         text = self.run_example("density_along_screw.py", "--spacing", 3, "--tetrahedra", 3000)
         length, density, difference = map(float, re.search(
             r"([\d.]+) mm of .* density (\d+) HU\n.*: (\d+) HU", text).groups())
-        self.assertGreater(length, 85)
+        self.assertGreater(length, 80)
         self.assertLess(length, 95)
         self.assertAlmostEqual(density, 348, delta=20)
-        self.assertLess(difference, 25)
+        self.assertLess(difference, 40)
 
     def test_subject_from_two_radiographs(self):
         text = self.run_example("subject_from_two_radiographs.py", "--subjects", 4, "--spacing", 3, "--tetrahedra", 1500,
