@@ -76,8 +76,9 @@ const after = (shaderType, place, code) => ({
 export function densityShader(degree) {
   const names = densityAttributeNames(degree);
   const type = (name) => (name === 'corner' ? 'vec2' : 'vec4');
-  // Coefficients are the same at a triangle's three vertices.
-  const varying = (name) => `${name === 'corner' ? '' : 'flat '}varying ${type(name)} ${name}VSOutput;`;
+  // Coefficients are the same at a triangle's three vertices; the place of a pixel at a triangle's rim is one within it,
+  // as polynomials grow steeply beyond slender triangles.
+  const varying = (name) => `${name === 'corner' ? 'centroid' : 'flat'} varying ${type(name)} ${name}VSOutput;`;
   const stops = densityStops.map((channels) => `vec3(${channels.map((c) => glslNumber(c / 255)).join(', ')})`);
   const last = stops.length - 1;
   return [
