@@ -316,8 +316,10 @@ class Running(TestCase):
                 timer.start()
 
         with self.assertRaises(KeyboardInterrupt):
-            call(progress=progress)
-        timer.join()
+            try:
+                call(progress=progress)
+            finally:
+                timer.cancel()
         return time.monotonic() - sent[0]
 
     def test_keyboard_interrupt(self):
@@ -356,7 +358,7 @@ class Running(TestCase):
             while not stop.wait(0.01):
                 counted.append(time.monotonic())
 
-        thread = threading.Thread(target=count)
+        thread = threading.Thread(target=count, daemon=True)
         thread.start()
         self.build("out")
         stop.set()
