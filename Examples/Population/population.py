@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""What becomes of each subject: its build, what came of it, and the table of those that failed.
+
+    population.py build   SUBJECTS.csv NAME|NUMBER --results FOLDER [--attempt N] [--attempts N] [--again] -- BONETK OPTIONS
+    population.py collect SUBJECTS.csv             --results FOLDER [--level N]
+
+`build` runs `BONETK build` for one subject, named, or the table's first, second, … It writes FOLDER/outcomes/NAME.csv and
+ends with 0 once nothing more is to be tried: the model is there, or the data (exit code 1) or the options (2) are bad, or
+`--attempts` were made. Otherwise (a kill, memory or disk that ran out, no program) it ends with the build's exit code: try again.
+`collect` writes FOLDER/failures.csv, and FOLDER/subjects.txt for `bonetk train`.
+"""
+import argparse
+import csv
+import hashlib
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+
+FINAL = (0, 1, 2)  # exit codes of bonetk that another attempt would not change
+
+
+def read_subjects(path):
+    """The table's rows by subject, in its order; file names made relative to the current folder."""
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        rows = list(csv.DictReader(file, skipinitialspace=True))
+    subjects = {}
+    for number, row in enumerate(rows, 1):
+        row = {key: (value or "").strip() for key, value in row.items() if key}
+        missing = [column for column in ("subject", "ct", "labels") if not row.get(column)]
+        if missing:
+            sys.exit(f"{path}: subject number {number} has no {' and no '.join(missing)}; columns are subject, ct, labels, label")
+        name = row["subject"]
+        if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", name):
+            sys.exit(f"{path}: subject '{name}' names files: use letters, digits, '_', '-' and '.' alone")
+        if name in subjects:
+            sys.exit(f"{path}: subject '{name}' is there twice")
+        for column in ("ct", "labels"):
+            row[column] = os.path.join(os.path.dirname(path), row[column])
+        subjects[name] = row
+    return subjects
+
+
+def last_status(path):
+    """The last whole line of a status file; empty where there is none."""
+    status = {}
+    try:
+        with open(path, encoding="utf-8") as file:
+            for line in file:
+                status = json.loads(line)
+    except (OSError, ValueError):
+        pass
+    return status
+
+
+def reason(code, status, log):
+    """Why a build has failed: the program's own error, or where it was when it was killed."""
+    if "error" in status:
+        return status["error"]
+    if code is None or code > 128:
+        how = "no end" if code is None else f"killed by signal {code - 128}"
+        return f"{how} in the stage {status.get('stage', 'start')}"
+    with open(log, encoding="utf-8", errors="replace") as file:  # bad options: there is no status yet
+        lines = file.read().strip().splitlines()
+    return lines[-1].removeprefix("bonetk build: ") if lines else f"exit code {code} without an error"
+
+
+def paths(results, name):
+    """Outcome, status, log and model folder of a subject."""
+    return [os.path.join(results, *parts) for parts in (("outcomes", name + ".csv"), ("status", name + ".jsonl"),
+                                                         ("logs", name + ".txt"), ("models", name))]
+
+
+def write(path, text):
+    """All of a file at once."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path + ".part", "w", encoding="utf-8", newline="") as file:
+        file.write(text)
+    os.replace(path + ".part", path)
+
+
+def write_rows(path, rows):
+    table = io.StringIO()
+    csv.writer(table, lineterminator="\n").writerows(rows)
+    write(path, table.getvalue())
+
+
+def build(row, options):
+    """One attempt; returns the exit code, 0 also for an outcome that is final."""
+    outcome, status, log, model = paths(options.results, row["subject"])
+    if os.path.exists(outcome) and not options.again:
+        return 0
+    for path in (outcome, status, log, model):
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+    code = None  # of an attempt that took all of its job along
+    if options.attempt <= options.attempts:
+        if os.path.exists(status):
+            os.remove(status)
+        program, *others = options.command
+        command = [program, "build", row["ct"], "--labels", row["labels"], *others, "-o", model, "--status", status]
+        command += ["--label", row["label"]] if row.get("label") else []
+        with open(log, "w", encoding="utf-8") as file:
+            try:
+                code = subprocess.run(command, stdout=file, stderr=file, check=False).returncode
+            except OSError as error:
+                print(error, file=file, flush=True)
+                code = 127
+        code = 128 - code if code < 0 else code
+    if code not in FINAL and options.attempt < options.attempts:
+        print(f"{row['subject']}: {reason(code, last_status(status), log)}: try again", file=sys.stderr)
+        return code or 1
+    why = "" if code == 0 else reason(code, last_status(status), log)
+    write_rows(outcome, [[row["subject"], "" if code is None else code, why]])
+    return 0
+
+
+def collect(subjects, options):
+    """The table of failures, and the list for the atlas, which names each subject's model and CT."""
+    failures, used, models = [], [], hashlib.sha256()
+    for name, row in subjects.items():
+        outcome, status, _, model = paths(options.results, name)
+        if os.path.exists(outcome):
+            with open(outcome, newline="", encoding="utf-8") as file:
+                result = next(csv.reader(file))
+        else:
+            result = [name, "", reason(None, last_status(status), None)]
+        if result[1] != "0":
+            failures.append(result)
+            continue
+        mesh = os.path.join(model, f"model_L{options.level}.vtu")
+        with open(mesh, "rb") as file:
+            models.update(file.read())
+        used.append(f"{os.path.relpath(mesh, options.results)}, {os.path.abspath(row['ct'])}")
+    write_rows(os.path.join(options.results, "failures.csv"), [["subject", "exit", "reason"], *failures])
+    # With the checksum the list changes when a model does, so that the atlas is made anew.
+    write(os.path.join(options.results, "subjects.txt"), "\n".join([f"# models {models.hexdigest()}", *used, ""]))
+    print(f"{len(used)} models, {len(failures)} failures")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True, dest="what")
+    for what in ("build", "collect"):
+        command = commands.add_parser(what)
+        command.add_argument("subjects")
+        if what == "build":
+            command.add_argument("subject")
+            command.add_argument("--attempt", type=int, default=1)
+            command.add_argument("--attempts", type=int, default=3)
+            command.add_argument("--again", action="store_true", help="though there is an outcome")
+            command.add_argument("command", nargs="+", metavar="BONETK OPTIONS")
+        command.add_argument("--level", type=int, default=1)
+        command.add_argument("--results", required=True)
+    options = parser.parse_args()
+    subjects = read_subjects(options.subjects)
+    if options.what == "collect":
+        return collect(subjects, options)
+    if options.subject in subjects:
+        return build(subjects[options.subject], options)
+    if not options.subject.isdecimal() or not 1 <= int(options.subject) <= len(subjects):
+        sys.exit(f"{options.subjects}: there is no subject {options.subject}")
+    return build(list(subjects.values())[int(options.subject) - 1], options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
