@@ -6,6 +6,11 @@ import numpy as np
 import bonetk
 from bodies import box, bump, linear, ramp_image
 
+try:
+    import torch
+except ImportError:
+    torch = None
+
 
 def view(pixels=48):
     return bonetk.XRayGeometry.framing((-3, -3, -3), (33, 27, 39), beam=(0.6, 1, 0.5), up=(-0.2, -0.4, 1), pixels=pixels)
@@ -153,6 +158,46 @@ class Derivatives(unittest.TestCase):
             pullback(self.weights[:-1])
         with self.assertRaisesRegex(bonetk.UsageError, "six numbers"):
             bonetk.drr_vjp(self.mesh, self.view, [1, 2])
+
+    def test_a_radiograph_is_a_node_of_a_graph(self):
+        """Of a number that depends on it by Beer's law, and it on logarithms of densities: by torch where it is there."""
+        change = np.random.default_rng(7).normal(size=self.mesh.coefficients.shape)
+        start = 0.1 * np.random.default_rng(8).normal(size=change.shape)
+        attenuation = 1 / bonetk.drr(self.mesh, self.view).array.max()
+
+        def node(coefficients):
+            value, pullback = bonetk.drr_vjp(self.mesh.replace(coefficients=coefficients), self.view)
+            return value, lambda cotangent: pullback(cotangent.astype(np.float32))["coefficients"]
+
+        def gradient_by_hand():
+            coefficients = self.mesh.coefficients * np.exp(start)
+            integrals, pullback = node(coefficients)
+            of_integrals = -attenuation * self.weights * np.exp(-attenuation * integrals)
+            return pullback(of_integrals) * coefficients
+
+        def gradient_by_torch():
+            class Radiograph(torch.autograd.Function):
+                @staticmethod
+                def forward(context, coefficients):
+                    value, context.pullback = node(coefficients.detach().numpy())
+                    return torch.from_numpy(value.copy())
+
+                @staticmethod
+                def backward(context, cotangent):
+                    return torch.from_numpy(context.pullback(cotangent.numpy()))
+
+            parameters = torch.from_numpy(start).requires_grad_()
+            integrals = Radiograph.apply(torch.from_numpy(self.mesh.coefficients) * torch.exp(parameters))
+            (torch.from_numpy(self.weights) * torch.exp(-attenuation * integrals)).sum().backward()
+            return parameters.grad.numpy()
+
+        def cost(step):
+            integrals, _ = node(self.mesh.coefficients * np.exp(start + step[0] * change))
+            return self.number(np.exp(-attenuation * integrals.astype(float)))
+
+        wanted = self.differences(cost, np.zeros(1), 0.02)[0]
+        gradient = gradient_by_torch() if torch else gradient_by_hand()
+        self.assertAlmostEqual((gradient * change).sum() / wanted, 1, delta=0.005)
 
     def test_a_pose_is_found_again(self):
         from scipy.optimize import minimize
