@@ -19,7 +19,7 @@ import numpy
 import bonetk
 from bonetk import commands
 from bonetk._bonetk import describe_commands
-from bodies import box, linear
+from bodies import SANITIZED, box, linear
 from bonetk_testing import bonetk as program, write_json
 from deform_test import SIZES, write_subject
 
@@ -367,6 +367,7 @@ class Running(TestCase):
 
 
 class Import(TestCase):
+    @unittest.skipIf(SANITIZED, "the sanitizers' runtime takes longer to load")
     def test_import_is_fast(self):
         """In processor time, which other processes do not change."""
         def seconds(script):
