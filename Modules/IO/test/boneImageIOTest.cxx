@@ -373,6 +373,26 @@ TEST_F(ImageIOTest, ReadsAnSformAloneWithSmallVoxelsOrAFarOriginOrRoundedAxes)
   }
 }
 
+TEST_F(ImageIOTest, RefusesAnSformWhoseSkewMovesTheImagesEnd)
+{
+  // A small angle, which over 1000 voxels is a quarter of one.
+  const float affine[3][4] = { { 0.2f, 1e-4f, 0, 65.5f }, { 0, 0.2f, 0, 146.8f }, { 0, 0, 1, -420.1f } };
+  for (const short columns : { short{ 4 }, short{ 1000 } })
+  {
+    std::string file = Nifti({ 4, columns, 2 });
+    std::memcpy(&file[280], affine, sizeof(affine));
+    WriteText("s.nii", file);
+    if (columns == 4)
+    {
+      EXPECT_NO_THROW(ReadCT(Path("s.nii")));
+    }
+    else
+    {
+      EXPECT_THAT(ErrorOfReading("s.nii"), HasSubstr("its axes are not at right angles"));
+    }
+  }
+}
+
 TEST_F(ImageIOTest, RefusesAShearedDirection)
 {
   WriteText("s.nii", Nifti({ 4, 3, 2 }, 0.01f));
