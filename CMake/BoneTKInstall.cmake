@@ -20,9 +20,9 @@ install(EXPORT BoneTKTargets NAMESPACE BoneTK:: DESTINATION ${config_dir} COMPON
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc/bonetk-doc)
 install(FILES README.md CHANGELOG.md DESTINATION ${doc_dir} COMPONENT documentation)
 install(DIRECTORY Documentation Examples DESTINATION ${doc_dir} COMPONENT documentation USE_SOURCE_PERMISSIONS
-        PATTERN Doxyfile EXCLUDE PATTERN __pycache__ EXCLUDE)
+        PATTERN site EXCLUDE PATTERN __pycache__ EXCLUDE)
 file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-     Modules/*/README.md Testing/*/README.md Wrapping/README.md Wrapping/*/README.md)
+     Modules/*/README.md Testing/*/README.md Wrapping/*/README.md)
 foreach(page IN LISTS pages)
   cmake_path(GET page PARENT_PATH folder)
   install(FILES ${page} DESTINATION ${doc_dir}/${folder} COMPONENT documentation)
@@ -32,3 +32,7 @@ foreach(package IN ITEMS program:bonetk development:libbonetk-dev python:python3
   string(REPLACE ":" ";" package ${package})
   bonetk_install_copyright(${package})
 endforeach()
+
+# cmake --build build/release --target site
+add_custom_target(site COMMAND ${PROJECT_SOURCE_DIR}/Documentation/site/make.sh ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/site
+                  COMMENT "Documentation: ${PROJECT_BINARY_DIR}/site/html/index.html" USES_TERMINAL VERBATIM)

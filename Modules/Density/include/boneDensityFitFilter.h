@@ -24,9 +24,9 @@ namespace bone
  * that the input held is replaced.
  *
  * Each tetrahedron samples the interpolated image at a fixed pattern of interior points (\ref DensityFitKernel), more
- * than twice as many as there are coefficients and several for each voxel in it (\ref DensityFitPlan); their
+ * than twice as many as there are coefficients and several for each voxel in it; their
  * least-squares fit is p0. The voxels whose centres lie in the tetrahedron, which interpolation blurs, are then
- * added: the result p minimises  (1/V) sum_v (p(x_v) - y_v)^2 + (1/VoxelWeight) mean (p - p0)^2  (\ref PenalizedFit), V
+ * added: the result p minimises  (1/V) sum_v (p(x_v) - y_v)^2 + (1/VoxelWeight) mean (p - p0)^2, V
  * being their number or the tetrahedron's volume in voxels, whichever is more. A tetrahedron without voxels keeps p0,
  * so the polynomial does not oscillate where voxels are few. Only points inside the tetrahedron count, so a bone's
  * surface is as sharp as the mesh. Where a mesh reaches beyond the outermost voxel centres, the nearest value between

@@ -59,7 +59,7 @@ enum class ContourKind : std::size_t
   MedialAxis
 };
 
-/** Name and colour of each kind of contour, in the order of \ref ContourKind: every picture and page asks here. */
+/** Name and colour of each kind of contour, in the order of ContourKind; every picture and page asks here. */
 const std::array<ContourStyle, 5> &
 ContourStyles();
 

@@ -19,8 +19,8 @@ namespace bone
  * float coordinates cannot hold the result without an inverted cell, itk::ExceptionObject says so.
  *
  * Cells of the input that are flat or inverted are made positive first by moving inner and interface points (\ref
- * Untangle). Throws itk::ExceptionObject where the input is missing, has no cells or points that are not finite, lacks
- * valid face neighbours, or where cells stay flat or inverted, with their number. */
+ * RepairInvertedCells). Throws itk::ExceptionObject where the input is missing, has no cells or points that are not
+ * finite, lacks valid face neighbours, or where cells stay flat or inverted, with their number. */
 template <typename TMesh>
 class MeshToMeshFilter : public MeshFilter<TMesh>
 {

@@ -13,11 +13,14 @@ namespace bone
  *
  * The gradients f of the X-ray and g of the radiograph (two components a pixel) are divided by their magnitudes, with
  * soft thresholds below which they fade to 0:
- * \f[ u_f = \frac{f}{\sqrt{|f|^2 + e_f^2}}, \quad u_g = \frac{g}{\sqrt{|g|^2 + e_g^2}}, \quad
- *     e_f^2 = \kappa^2 \overline{|f|^2}, \quad e_g^2 = \kappa^2 \overline{|g|^2} \f]
- * with weighted means over the pixels that count, and the relative threshold \f$\kappa\f$. The cost is
- * \f[ 1 - \sum_i w_i \, u_{f,i} \cdot u_{g,i} \Big/
- *     \sqrt{\textstyle\sum_i w_i |u_{f,i}|^2 \, \sum_i w_i |u_{g,i}|^2} , \f]
+ * \verbatim
+   u_f = f / sqrt(|f|^2 + e_f^2),   e_f^2 = kappa^2 mean(|f|^2)
+   u_g = g / sqrt(|g|^2 + e_g^2),   e_g^2 = kappa^2 mean(|g|^2)
+   \endverbatim
+ * with weighted means over the pixels that count, and the relative threshold kappa. The cost is
+ * \verbatim
+   1 - (sum_i w_i u_f,i . u_g,i) / sqrt(sum_i w_i |u_f,i|^2 sum_i w_i |u_g,i|^2)
+   \endverbatim
  * 0 for equal images, about 1 for images that have nothing to do with each other and for a constant radiograph, 2 for
  * opposite ones. A pixel whose gradients are both far above the thresholds contributes the cosine of the angle between
  * them. So strong edges of one image alone (implants, instruments) count no more than others. The cost does not change

@@ -23,9 +23,12 @@ struct IntensityDifferenceParameters
  * \brief Robust difference of line integrals, less a smooth background.
  *
  * With the X-ray's line integrals t, the radiograph g, weights w and scale s the cost is
- * \f[ \min_{\beta,\gamma} \Big[ \sum_i w_i \rho\Big(\frac{t_i - \gamma g_i - (B\beta)_i}{s}\Big)
- *     + \sum_k \frac{\beta_k^2}{2 (s d)^2} + \frac{(\gamma - 1)^2}{2 e^2} \Big] \Big/ \sum_i w_i , \f]
- * where \f$\rho\f$ is Huber's loss (half the square up to the threshold, then linear), B the background's tensor
+ * \verbatim
+   min over beta, gamma of
+   [ sum_i w_i rho((t_i - gamma g_i - (B beta)_i) / s) + sum_k beta_k^2 / (2 (s d)^2) + (gamma - 1)^2 / (2 e^2) ]
+   / sum_i w_i
+   \endverbatim
+ * where rho is Huber's loss (half the square up to the threshold, then linear), B the background's tensor
  * products of cubic B-splines, d and e the prior deviations of background and gain. The minimum is convex in
  * background and gain, and found by Newton's method with iteratively reweighted least squares where that fails. The
  * background takes up soft tissue, scatter and an unknown I0. The gradient is that at the minimum (envelope

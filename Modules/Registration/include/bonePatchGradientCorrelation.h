@@ -13,7 +13,9 @@ namespace bone
  *
  * f and g are the gradients (two components a pixel) of X-ray and radiograph in a patch, less their means there. The
  * cost is
- * \f[ 1 - \sum_p \frac{f_p}{|f_p|} \cdot g_p \Big/ \sum_p |g_p| , \f]
+ * \verbatim
+   1 - (sum_p f_p . g_p / |f_p|) / sum_p |g_p|
+   \endverbatim
  * 0 where they agree up to a factor of each patch, 1 where they have nothing in common, 2 at the most. A patch counts
  * by what the model shows there, whatever the X-ray's contrast: soft tissue and scatter change slowly over a patch and
  * so change the cost little, where correlation over the whole image has its minimum elsewhere. Patches overlap by half.

@@ -8,7 +8,7 @@
 
 namespace bone
 {
-/** What the tiling minimises (paper 2.3): see the children of \ref TilingMetric. */
+/** What the tiling minimises (paper 2.3): see the children of TilingMetric. */
 enum class TilingMetricKind : int
 {
   Span,
