@@ -23,7 +23,8 @@ enum ExitCode
 {
   Success = 0,
   BadData = 1,
-  BadUsage = 2
+  BadUsage = 2,
+  MachineFailed = 3
 };
 
 void
@@ -181,6 +182,7 @@ Run(const Action & action, const std::vector<std::string> & names, Session & ses
     }
     outputs.Commit();
     session.outputs = outputs.GetCommitted();
+    session.outputs.insert(session.outputs.end(), session.kept.begin(), session.kept.end());
     session.Finish();
     return Success;
   }
@@ -192,6 +194,7 @@ Run(const Action & action, const std::vector<std::string> & names, Session & ses
   catch (const std::exception & error)
   {
     session.Fail(error);
+    return IsOfTheMachine(error) ? MachineFailed : BadData;
   }
   catch (...)
   {
@@ -263,7 +266,8 @@ AddCommands(CLI::App & app, Action & action, Session & session)
 std::string
 DescribeProgram()
 {
-  return "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage.";
+  return "BoneTK: layered tetrahedral density models of bones from CT. Exit codes: 0 done, 1 bad data, 2 bad usage, "
+         "3 no space on the disk or no memory, 128 and n ended by signal n.";
 }
 
 int
@@ -272,7 +276,7 @@ RunCommandLine(const std::vector<std::string> & words, Session & session)
   session.version = GetBuildInformation().version;
   session.commandLine = JoinWords(words);
   CLI::App app(DescribeProgram(), "bonetk");
-  Action action;
+  Action   action;
   AddCommands(app, action, session);
   int                      exitCode = Success;
   std::vector<std::string> outputs;

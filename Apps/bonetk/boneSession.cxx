@@ -17,6 +17,7 @@
 #include <cstring>
 #include <new>
 #include <regex>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -81,6 +82,13 @@ TimeLeft(double seconds)
          " left";
 }
 
+bool
+IsOfMemory(const std::exception & error)
+{
+  return dynamic_cast<const std::bad_alloc *>(&error) != nullptr ||
+         dynamic_cast<const itk::MemoryAllocationError *>(&error) != nullptr;
+}
+
 /** Columns of the terminal. */
 std::size_t
 WidthOf(int terminal)
@@ -89,6 +97,15 @@ WidthOf(int terminal)
   return ioctl(terminal, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 } // namespace
+
+bool
+IsOfTheMachine(const std::exception & error)
+{
+  // A thread that cannot be started, as with a limit on processes.
+  const auto * ofSystem = dynamic_cast<const std::system_error *>(&error);
+  return IsOfMemory(error) || dynamic_cast<const MachineError *>(&error) != nullptr ||
+         (ofSystem != nullptr && ofSystem->code() == std::errc::resource_unavailable_try_again);
+}
 
 Session::Session(SessionStreams streams)
   : m_Captured(streams == SessionStreams::Captured)
@@ -182,11 +199,11 @@ Session::Finish() const
 {
   if (m_PrintError != 0 && m_PrintError != EPIPE)
   {
-    throw IOError("standard output", std::string("cannot write: ") + std::strerror(m_PrintError));
+    RefuseToWrite("standard output", "cannot write", m_PrintError);
   }
   if (m_StatusFile && m_StatusFile->GetError() != 0)
   {
-    throw IOError(status, std::string("cannot write: ") + std::strerror(m_StatusFile->GetError()));
+    RefuseToWrite(status, "cannot write", m_StatusFile->GetError());
   }
 }
 
@@ -252,8 +269,7 @@ Session::Fail(const std::exception & error)
 {
   const auto * ofItk = dynamic_cast<const itk::ExceptionObject *>(&error);
   std::string  message = ofItk == nullptr ? error.what() : ErrorLine(*ofItk);
-  if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ||
-      dynamic_cast<const itk::MemoryAllocationError *>(&error) != nullptr)
+  if (IsOfMemory(error))
   {
     message = "not enough memory for this input";
   }
@@ -282,6 +298,10 @@ Session::Start()
       const std::lock_guard<std::timed_mutex> lock(m_Mutex);
       m_StatusFile = std::move(file);
     }
+    catch (const MachineError &)
+    {
+      throw;
+    }
     catch (const IOError & error)
     {
       throw UsageError(ErrorLine(error));
@@ -290,7 +310,7 @@ Session::Start()
     m_StatusFile->Write(this->StatusLine("start", 0, more));
     if (m_StatusFile->GetError() != 0)
     {
-      throw UsageError(status + ": cannot write: " + std::strerror(m_StatusFile->GetError()));
+      RefuseToWrite(status, "cannot write", m_StatusFile->GetError());
     }
   }
   if (m_StatusFile || this->ShowsProgress())

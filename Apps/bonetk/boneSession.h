@@ -65,6 +65,7 @@ public:
   std::string              version;
   std::vector<std::string> inputs;  ///< files that the command line names
   std::vector<std::string> outputs; ///< files and folders that were written, see OutputTransaction::GetCommitted()
+  std::vector<std::string> kept;    ///< those of an earlier run that are as they would be written
   std::string              subject; ///< of several that the command works on; warnings and errors name it
 
   /** To be called before the work: opens the status file and writes its first line. Throws UsageError where it cannot
@@ -274,6 +275,10 @@ class UsageError : public std::runtime_error
 public:
   using std::runtime_error::runtime_error;
 };
+
+/** Whether another try may do: MachineError, no memory, or no thread to be had. */
+bool
+IsOfTheMachine(const std::exception & error);
 } // namespace bone
 
 #endif

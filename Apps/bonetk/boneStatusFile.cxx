@@ -108,7 +108,7 @@ StatusFile::StatusFile(const std::string & path, int output, int error)
   }
   if (m_File < 0)
   {
-    throw IOError(path, std::string("cannot write: ") + std::strerror(errno));
+    RefuseToWrite(path, "cannot write", errno);
   }
 }
 

@@ -6,7 +6,7 @@
 
 `build` runs `BONETK build` for one subject, named, or the table's first, second, … It writes FOLDER/outcomes/NAME.csv and
 ends with 0 once nothing more is to be tried: the model is there, or the data (exit code 1) or the options (2) are bad, or
-`--attempts` were made. Otherwise (a kill, no program) it ends with the build's exit code: try again.
+`--attempts` were made. Otherwise (no space, no memory, a kill, no program) it ends with the build's exit code: try again.
 `collect` writes FOLDER/failures.csv, and FOLDER/subjects.txt for `bonetk train`.
 """
 import argparse

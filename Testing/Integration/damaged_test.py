@@ -200,7 +200,7 @@ class Outputs(TestCase):
     def test_text_that_is_lost_is_an_error(self):
         with open("/dev/full", "w") as full:
             done = subprocess.run([BONETK, "info", "ct.mha"], stdout=full, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.returncode, 3)
         self.assertIn("standard output", done.stderr)
 
     def test_levels_of_an_earlier_build_go(self):

@@ -7,6 +7,9 @@ import signal
 import subprocess
 import time
 
+import nibabel
+import numpy
+
 from bonetk_testing import BONETK, TestCase, bonetk, main, phantom
 
 BUILD = ["--labels", "l.nii.gz", "--tetrahedra", "4000", "--degree", "2"]
@@ -49,6 +52,79 @@ class Outputs(TestCase):
         with open("file", "w"):
             pass
         self.refuse("build", "ct.nii.gz", *BUILD, "-o", "file", says="file")
+
+    def small_build(self, *options, folder="out", bones=(), labels="l.nii.gz"):
+        """Makes a small build and returns what it printed, its warnings, and which of its reports are new."""
+        reports = [os.path.join(folder, bone, "report.json") for bone in bones or [""]]
+        before = [os.stat(report).st_mtime_ns if os.path.exists(report) else None for report in reports]
+        out, err = self.succeed("build", "ct.nii.gz", "--labels", labels, "--tetrahedra", 1500, "--no-page", *options, "-o", folder)
+        return out, err, [os.stat(report).st_mtime_ns != time_before for report, time_before in zip(reports, before)]
+
+    def require_clean_sources(self):
+        if "changed" in bonetk("--version")[1]:
+            self.small_build()
+            self.assertEqual(self.small_build()[2], [True])  # sources that differ from their commit have no name
+            self.skipTest("the program's sources differ from their commit")
+
+    def test_a_build_that_is_done_is_not_done_again(self):
+        self.require_clean_sources()
+
+        def built(*options):
+            out, err, new = self.small_build("--degree", 1, *options)
+            self.assertEqual(out == "out is done: the same inputs, parameters and program as before; --force builds it anew\n", not new[0])
+            self.assertIn("warning", err)  # of a build that is left too
+            return new[0]
+
+        self.assertTrue(built())
+        whole = self.contents("out")
+        self.assertFalse(built())
+        self.assertFalse(built("--threads", 1, "--status", "status.jsonl"))
+        with open("status.jsonl") as file:
+            self.assertIn('"exit":0', file.readlines()[-1])
+        shutil.copyfile("ct.nii.gz", "same.nii.gz")
+        os.replace("same.nii.gz", "ct.nii.gz")
+        self.assertFalse(built())
+        self.assertEqual(self.contents("out"), whole)
+        self.assertTrue(built("--force"))
+        self.assertTrue(built("--levels", 0.4))
+        self.assertTrue(built())
+        self.assertEqual(self.contents("out"), whole)
+        for damage in (lambda: os.truncate("out/model_L2.vtu", 1000), lambda: os.remove("out/contours.vtp"),
+                       lambda: os.truncate("out/report.json", os.path.getsize("out/report.json") - 10)):
+            damage()
+            self.assertTrue(built())
+        self.assertEqual(self.contents("out"), whole)
+        image = nibabel.load("ct.nii.gz")
+        voxels = numpy.asarray(image.dataobj).copy()
+        voxels[tuple(size // 2 for size in voxels.shape)] += 1
+        nibabel.save(nibabel.Nifti1Image(voxels, image.affine, image.header), "ct.nii.gz")
+        self.assertTrue(built())
+
+    def test_voxels_in_another_file_are_always_built(self):
+        self.require_clean_sources()
+        image = nibabel.load("l.nii.gz")
+        nibabel.save(nibabel.Nifti1Pair(numpy.asarray(image.dataobj), image.affine, image.header), "l.hdr")
+        for _ in range(2):
+            self.assertEqual(self.small_build(labels="l.hdr")[2], [True])
+
+    def test_bones_that_are_done_are_left(self):
+        self.require_clean_sources()
+        bones = ["label_1", "label_2"]
+        options = {"folder": "b", "bones": bones}
+        choice = ("--degree", 1, "--label", "1,2")
+        self.assertEqual(self.small_build(*choice, **options)[2], [True, True])
+        warnings = self.small_build(*choice, **options)[1]
+        self.assertIn("label_2: warning", warnings)
+        os.remove("b/label_2/contours.vtp")
+        out, err, new = self.small_build(*choice, **options)
+        self.assertIn("b/label_1 is done", out)
+        self.assertEqual((sorted(err.splitlines()), new), (sorted(warnings.splitlines()), [False, True]))
+        shutil.copytree("b/label_1", "b/copy")
+        shutil.rmtree("b/label_2")
+        self.assertEqual(self.small_build(*choice, **options)[2], [False, True])
+        self.assertEqual(self.small_build(*choice, **options),
+                         ("b is done: the same inputs, parameters and program as before; --force builds it anew\n", warnings, [False, False]))
+        self.assertEqual(self.small_build(*choice, "--force", **options)[2], [True, True])
 
     def snapshot(self, name):
         """What is under that name: nothing (None), a folder's contents, or a file's bytes."""
@@ -111,7 +187,7 @@ class Outputs(TestCase):
         """A file may not grow beyond `limit` bytes, which writers see as they see a full disk.
 
         Before the command's own line there may be warnings, and messages of the NIfTI library."""
-        self.refuse(*arguments, "-q", lines=3,
+        self.refuse(*arguments, "-q", lines=3, code=3,
                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 
     def test_full_disk(self):
@@ -122,6 +198,12 @@ class Outputs(TestCase):
         self.full_disk(2000, "contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "-o", "c.vtp")
         self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "-o", "c.vtp")
         self.full_disk(20000, "mesh", "c.vtp", "-o", "m.vtu")
+
+    def test_too_little_memory(self):
+        limit = 1 << 30  # bytes of address space, of which the program's libraries take a part
+        nibabel.save(nibabel.Nifti1Image(numpy.zeros((700, 700, 700), numpy.uint8), numpy.eye(4)), "big.nii.gz")
+        for command in (["phantom", "--spacing", 0.2, "-o", "p.nii"], ["build", "big.nii.gz", "--labels", "l.nii.gz", "-o", "out"]):
+            self.refuse(*command, "-q", code=3, says="memory", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
 
 
 if __name__ == "__main__":

@@ -142,9 +142,10 @@ class Progress(TestCase):
     def test_status_files_that_are_refused(self):
         os.mkdir("folder")
         for path, says in (("nowhere/s.jsonl", "No such file"), ("folder", "folder"), ("ct.nii.gz", "no status file"),
-                           ("/dev/full", "No space left"), ("/dev/fd/57", "Bad file descriptor"),
+                           ("/dev/fd/57", "Bad file descriptor"),
                            ("p.mha", "output"), ("./folder/../p.mha", "output"), ("p.txt", "output")):
             self.refuse_usage("phantom", "-o", "p.mha", "--status", path, says=says)
+        self.refuse("phantom", "-o", "p.mha", "--status", "/dev/full", code=3, says="No space left")
         os.mkdir("out")
         self.refuse_usage(*BUILD, "--status", "out/report.json", says="output")
         self.refuse_usage("simplify", "m.vtu", "-o", "m", "--status", "m_L1.vtu", says="output")

@@ -15,7 +15,7 @@ Each writes the same bytes as the program and returns a ``Result``. Inputs come 
 option at its default. ``progress`` is called as ``progress(stage, share)`` on the calling thread, the share going from 0
 to 1. An exception that it raises, or Ctrl-C, stops the work and comes out; then no output is written. One command runs
 at a time in a process. Raises ``bonetk.UsageError`` where the program ends with 2, ``bonetk.DataError`` where it ends
-with 1.
+with 1, ``bonetk.Error``, which both are, where it ends with 3 (no space on the disk, or no memory).
 """
 from __future__ import annotations
 

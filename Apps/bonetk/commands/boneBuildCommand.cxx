@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneAtlasInputs.h"
 #include "boneBuildInformation.h"
+#include "boneBuildRequest.h"
 #include "boneCommands.h"
 #include "boneInputOptions.h"
 #include "boneOptions.h"
@@ -22,6 +23,7 @@
 #include "boneStageClock.h"
 #include "boneStagingFolder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cctype>
 #include <cstring>
@@ -29,7 +31,6 @@
 #include <filesystem>
 #include <iomanip>
 #include <regex>
-#include <set>
 #include <sstream>
 
 namespace bone
@@ -54,6 +55,7 @@ struct BuildOptions
   BuildFiles         files;   ///< of the report that the parameters come from
   std::exception_ptr failure; ///< of reading it
   PageOption         page;
+  bool               force{ false };
 };
 
 /** What the command line names; without a CT, what the report names that the parameters come from. */
@@ -108,11 +110,44 @@ WriteBuildPage(const Evaluation &  evaluation,
   WritePage(page, path, session, std::move(parameters), report.times);
 }
 
+/** What is asked for; null where a repetition could not be known. */
+nlohmann::json
+RequestOf(const BuildOptions & options)
+{
+  const BoneOptions &         bone = options.bone;
+  nlohmann::json              asked{ { "series", options.series },
+                        { "label", bone.labels.wanted },
+                        { "structure", bone.structure },
+                        { "page", options.page.IsOn() },
+                        { "parameters", nlohmann::json::parse(ToJson(options.parameters)) } };
+  std::vector<ParameterValue> atlas;
+  AddParameters("atlas", options.atlas.parameters, atlas);
+  for (const ParameterValue & parameter : atlas)
+  {
+    asked["atlas"][parameter.name] = parameter.value;
+  }
+  return DescribeRequest({ { "image", options.ct },
+                           { "labels", bone.labels.file },
+                           { "labelNames", bone.labels.names },
+                           { "initialContours", bone.init },
+                           { "atlas", options.atlas.file } },
+                         std::move(asked));
+}
+
+std::vector<std::pair<std::string, std::uintmax_t>>
+FilesIn(const std::string & folder)
+{
+  std::vector<std::pair<std::string, std::uintmax_t>> files;
+  for (const auto & entry : std::filesystem::directory_iterator(folder))
+  {
+    files.emplace_back(entry.path().filename().string(), entry.file_size());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 void
-WriteOutputs(const Evaluation &  evaluation,
-             const BuildReport & report,
-             BuildPipeline &     pipeline,
-             StagingFolder &     staging)
+WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline & pipeline, StagingFolder & staging)
 {
   const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
   WriteContours(pipeline.GetMedialAxis()->GetOutput(), in("contours.vtp"));
@@ -127,6 +162,7 @@ WriteOutputs(const Evaluation &  evaluation,
   evaluation.cutPlane.Write(in("cut_plane.png"));
   evaluation.radiographs.Write(in("radiographs.png"));
   WriteFileAtomically(in("report.txt"), ToText(report));
+  report.outputs = FilesIn(staging.GetPath());
   WriteFileAtomically(in("report.json"), ToJson(report));
   static const std::regex optional("(model|drr)_L[0-9]+\\.(vtu|mha)|report\\.html");
   staging.Commit([](const std::string & name) { return std::regex_match(name, optional); });
@@ -185,12 +221,14 @@ private:
 /** What is built of one bone, and where. */
 struct BuildJob
 {
-  BoneInput   input;
-  std::string folder;
-  double      secondsOfReading{ 0.0 };
-  std::string registration; ///< of the atlas, as JSON; empty without one
-  double      from{ 0.0 };  ///< its work begins at this share of the command's
-  double      to{ 1.0 };
+  BoneInput                input;
+  std::string              folder;
+  double                   secondsOfReading{ 0.0 };
+  std::string              registration; ///< of the atlas, as JSON; empty without one
+  double                   from{ 0.0 };  ///< its work begins at this share of the command's
+  double                   to{ 1.0 };
+  std::string              request; ///< as JSON; empty where a repetition could not be known
+  std::vector<std::string> bones;   ///< folders of several that are built together
 };
 
 /** Of the command's progress: reading the CT, or finding the bone in it by an atlas. */
@@ -230,6 +268,8 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.version = GetBuildInformation().version;
   report.files = { options.ct,        options.series,         labels.file,       labels.names, bone.name,
                    options.bone.init, options.bone.structure, options.atlas.file };
+  report.request = job.request;
+  report.bones = job.bones;
   report.registration = job.registration;
   report.times.emplace_back("reading", job.secondsOfReading);
   StagingFolder staging(job.folder);
@@ -302,20 +342,27 @@ FolderName(const LabelledBone & bone)
 }
 
 std::vector<BuildJob>
-JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds)
+JobsOf(std::vector<BoneInput> bones, const std::string & folder, double seconds, const std::string & request)
 {
+  std::vector<std::string> names;
+  for (const BoneInput & input : bones)
+  {
+    names.push_back(FolderName(input.bone));
+    if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1)
+    {
+      throw UsageError("--label: " + names.back() + " is the folder of two bones; build one of them by itself");
+    }
+  }
+  if (bones.size() == 1)
+  {
+    return { { std::move(bones.front()), folder, seconds, "", shareOfReading, 1.0, request, {} } };
+  }
   const double          part = (1.0 - shareOfReading) / static_cast<double>(bones.size());
   std::vector<BuildJob> jobs;
-  std::set<std::string> names;
-  for (BoneInput & input : bones)
+  for (std::size_t i = 0; i < bones.size(); ++i)
   {
-    const std::string name = bones.size() == 1 ? "" : "/" + FolderName(input.bone);
-    if (!names.insert(name).second)
-    {
-      throw UsageError("--label: " + name.substr(1) + " is the folder of two bones; build one of them by itself");
-    }
-    const double from = shareOfReading + static_cast<double>(jobs.size()) * part;
-    jobs.push_back({ std::move(input), folder + name, seconds, "", from, from + part });
+    const double from = shareOfReading + static_cast<double>(i) * part;
+    jobs.push_back({ std::move(bones[i]), folder + "/" + names[i], seconds, "", from, from + part, request, names });
   }
   return jobs;
 }
@@ -349,43 +396,60 @@ BuildBones(const BuildOptions & options, const CTImage * ct, const std::vector<B
   const std::size_t        common = session.GetWarnings().size();
   std::vector<BuildReport> reports;
   std::string              failed;
+  bool                     machine = false;
   std::size_t              failures = 0;
   for (const BuildJob & job : jobs)
   {
     session.subject = std::filesystem::path(job.folder).filename().string();
     try
     {
-      reports.push_back(BuildBone(options, ct, job, session));
-      OutputTransaction::CommitTaken();
+      if (options.force || job.request.empty() || !IsBuilt(job.folder, nlohmann::json::parse(job.request), session))
+      {
+        reports.push_back(BuildBone(options, ct, job, session));
+        OutputTransaction::CommitTaken();
+      }
     }
     catch (const UsageError &)
     {
       throw;
     }
+    catch (const MachineError &)
+    {
+      throw; // as the next one's would not be written either
+    }
     catch (const std::exception & problem)
     {
       session.Fail(problem);
+      machine = machine || IsOfTheMachine(problem);
       failed += (failures++ == 0 ? "" : ", ") + session.subject;
     }
     session.ForgetWarnings(common);
   }
   session.subject.clear();
-  PrintTable(reports, session);
+  if (!reports.empty())
+  {
+    PrintTable(reports, session);
+  }
   if (failures > 0)
   {
     std::filesystem::remove(options.output, error); // where it is empty
-    throw std::runtime_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) +
-                             " bones could not be built: " + failed);
+    const std::string message =
+      std::to_string(failures) + " of " + std::to_string(jobs.size()) + " bones could not be built: " + failed;
+    if (machine)
+    {
+      throw MachineError(options.ct, message);
+    }
+    throw IOError(options.ct, message);
   }
 }
 
 /** The bone that the atlas finds, as a label map of its own. */
 BuildJob
-FindByAtlas(const BuildOptions & options, const CTImage * ct, Session & session)
+FindByAtlas(const BuildOptions & options, const CTImage * ct, const std::string & request, Session & session)
 {
   const auto          found = FindInCT(options.atlas.file, ct, options.atlas.parameters, session);
   LabelImage::Pointer labels = MaskOfLabel(found->GetLabelImage(), 0);
-  BuildJob            job{ { { labels, 1, "" }, nullptr }, options.output, 0.0, "", shareOfAtlas };
+  BuildJob            job{ { { labels, 1, "" }, nullptr }, options.output, 0.0, "", shareOfAtlas, 1.0, request, {} };
   job.registration = ReportRegistration(found->GetResult()).dump();
   return job;
 }
@@ -403,7 +467,13 @@ RunBuild(const BuildOptions & given, Session & session)
     const StagingFolder probe(options.output);
     VerifyFolder(options.output);
   }
-  const bool atlas = !options.atlas.file.empty();
+  const nlohmann::json asked = RequestOf(options);
+  if (!options.force && (IsBuilt(options.output, asked, session) || AreBuilt(options.output, asked, session)))
+  {
+    return;
+  }
+  const std::string request = asked.is_null() ? "" : asked.dump();
+  const bool        atlas = !options.atlas.file.empty();
   session.Expect(
     { { "reading", 1.0 }, { "register", atlas ? 30.0 : 0.0 } }, 0.0, atlas ? shareOfAtlas : shareOfReading);
   auto                   reading = std::make_unique<Session::Stage>(session, "reading");
@@ -412,14 +482,14 @@ RunBuild(const BuildOptions & given, Session & session)
   if (atlas)
   {
     reading.reset();
-    BuildJob job = FindByAtlas(options, ct, session);
+    BuildJob job = FindByAtlas(options, ct, request, session);
     job.secondsOfReading = lap();
     BuildBone(options, ct, job, session);
     return;
   }
   auto bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
   reading.reset();
-  const auto jobs = JobsOf(std::move(bones), options.output, lap());
+  const auto jobs = JobsOf(std::move(bones), options.output, lap(), request);
   if (jobs.size() == 1)
   {
     BuildBone(options, ct, jobs.front(), session);
@@ -473,6 +543,10 @@ AddBuildCommand(CLI::App & app, Action & action)
   command->get_option("--max-error")->excludes(command->get_option("--continuous"));
   AddStorageOptions(command, options->parameters.storage);
   options->page.AddTo(command);
+  command->add_flag(
+    "--force",
+    options->force,
+    "Build again what is there from the same inputs, parameters and program; default: it is left as it is");
   AddAxisOption(command, options->parameters.plan.axis);
   command->callback([options, &action] { action = [options](Session & session) { RunBuild(*options, session); }; });
 }

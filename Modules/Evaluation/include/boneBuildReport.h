@@ -46,6 +46,8 @@ struct BuildReport
 {
   std::string              version;
   BuildFiles               files;
+  std::string              request;      ///< what was asked for, as JSON, by which a repetition is known; may be empty
+  std::vector<std::string> bones;        ///< folders of those that were asked for together, this one too; none of one
   std::string              registration; ///< of the atlas that found the bone, as JSON; empty without one
   BuildParameters          parameters;   ///< of the plan as asked for, of the stages as they ran
   Resolution               resolution;
@@ -54,6 +56,8 @@ struct BuildReport
   TilingReport             tiling;
   std::vector<LevelReport> levels;
   std::vector<std::string> warnings;
+  /** The files beside the report, with their bytes. */
+  std::vector<std::pair<std::string, std::uintmax_t>> outputs;
   /** Seconds by step, in order. */
   std::vector<std::pair<std::string, double>> times;
 };

@@ -272,6 +272,14 @@ ToJson(const BuildReport & report)
                     { "labels", report.files.labels },       { "labelNames", report.files.labelNames },
                     { "labelName", report.files.labelName }, { "initialContours", report.files.initialContours },
                     { "structure", report.files.structure }, { "atlas", report.files.atlas } };
+  if (!report.request.empty())
+  {
+    json["request"] = nlohmann::json::parse(report.request);
+  }
+  if (!report.bones.empty())
+  {
+    json["bones"] = report.bones;
+  }
   if (!report.registration.empty())
   {
     json["registration"] = nlohmann::json::parse(report.registration);
@@ -291,6 +299,10 @@ ToJson(const BuildReport & report)
   for (const auto & [name, seconds] : report.times)
   {
     json["seconds"][name] = seconds;
+  }
+  for (const auto & [name, bytes] : report.outputs) // last, as a page's size changes with the times in it
+  {
+    json["outputs"][name] = bytes;
   }
   return json.dump(2) + "\n";
 }

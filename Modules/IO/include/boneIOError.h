@@ -32,6 +32,26 @@ public:
   }
 };
 
+/** \class MachineError
+ * \brief Where the machine is at fault and not what it was asked for, as with a full disk or too little memory: another
+ * time it may do. */
+class MachineError : public IOError
+{
+public:
+  using IOError::IOError;
+
+  const char *
+  GetNameOfClass() const override
+  {
+    return "MachineError";
+  }
+};
+
+/** Throws MachineError that ends in the text of errno's `code`; IOError where there is no such place, or nobody may
+ * write there, which is so another time too. */
+[[noreturn]] void
+RefuseToWrite(const std::string & path, const std::string & problem, int code);
+
 /** The text with blanks for line breaks and other control characters, which names in files may hold, and none at its
  * end. */
 std::string

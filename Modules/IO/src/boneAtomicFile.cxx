@@ -10,7 +10,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -42,19 +41,13 @@ constexpr int NumberOfSlots = 256;
 // Lock-free, so that a signal handler may look at it at any moment. Who takes a pointer out owns it.
 std::atomic<const void *> Slots[NumberOfSlots];
 
-std::string
-ErrorText(int code)
-{
-  return std::strerror(code);
-}
-
 void
 Flush(const std::string & path, const std::string & file)
 {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0)
   {
-    throw IOError(path, "cannot write: " + ErrorText(errno));
+    RefuseToWrite(path, "cannot write", errno);
   }
   const int status = ::fsync(descriptor);
   const int code = errno;
@@ -62,7 +55,7 @@ Flush(const std::string & path, const std::string & file)
   // File systems without fsync say EINVAL; there is nothing to wait for.
   if (status != 0 && code != EINVAL)
   {
-    throw IOError(path, "cannot write: " + ErrorText(code));
+    RefuseToWrite(path, "cannot write", code);
   }
 }
 
@@ -77,7 +70,7 @@ RequireRegularFile(const std::string & path, const fs::path & target)
   }
   if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0)
   {
-    throw IOError(path, "cannot write: " + ErrorText(errno));
+    RefuseToWrite(path, "cannot write", errno);
   }
 }
 } // namespace
@@ -107,7 +100,7 @@ AtomicFile::Temporary::Temporary(const std::string & path, const fs::path & targ
   const auto hold = OutputTransaction::Hold();
   if (::mkdtemp(folder.data()) == nullptr)
   {
-    throw IOError(path, "cannot write into the folder '" + parent.string() + "': " + ErrorText(errno));
+    RefuseToWrite(path, "cannot write into the folder '" + parent.string() + "'", errno);
   }
   file = (fs::path(folder) / target.filename()).string();
   pending = std::make_unique<Pending>();
@@ -188,7 +181,7 @@ AtomicFile::Commit()
   const auto      size = fs::file_size(m_Temporary->file, error);
   if (error || size == 0)
   {
-    throw IOError(m_Path, "cannot write: nothing reached the disk (is it full?)");
+    throw MachineError(m_Path, "cannot write: nothing reached the disk (is it full?)");
   }
   const fs::path                       folder = fs::path(m_Target).parent_path();
   std::vector<OutputTransaction::Move> moves;
@@ -212,7 +205,7 @@ AtomicFile::Write(const std::string & content)
   stream.close();
   if (!stream)
   {
-    throw IOError(m_Path, "cannot write: " + ErrorText(errno));
+    RefuseToWrite(m_Path, "cannot write", errno);
   }
 }
 

@@ -4,6 +4,9 @@
 #include "boneIOError.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
 
 namespace bone
 {
@@ -21,6 +24,19 @@ IOError::IOError(const std::string & path, const std::string & message)
   : itk::ExceptionObject(__FILE__, __LINE__)
 {
   this->SetDescription(OneLine(path + ": " + message));
+}
+
+void
+RefuseToWrite(const std::string & path, const std::string & problem, int code)
+{
+  static constexpr std::array<int, 10> lasting{ ENOENT, ENOTDIR, EISDIR,       EACCES, EPERM,
+                                                EROFS,  ELOOP,   ENAMETOOLONG, EBADF,  EINVAL };
+  const std::string                    message = problem + ": " + std::strerror(code);
+  if (std::find(lasting.begin(), lasting.end(), code) != lasting.end())
+  {
+    throw IOError(path, message);
+  }
+  throw MachineError(path, message);
 }
 
 std::string

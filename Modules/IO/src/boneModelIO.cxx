@@ -447,8 +447,8 @@ RequireWholeHdf5File(const std::string & path)
   }
 }
 
-/** Runs action() and turns HDF5's exceptions into IOError. */
-template <typename TAction>
+/** Runs action() and turns HDF5's exceptions into TError. */
+template <typename TError, typename TAction>
 auto
 NamingHdf5File(const std::string & path, const std::string & problem, TAction && action)
 {
@@ -459,7 +459,7 @@ NamingHdf5File(const std::string & path, const std::string & problem, TAction &&
   }
   catch (const H5::Exception &)
   {
-    throw IOError(path, problem); // what HDF5 says is about its own functions
+    throw TError(path, problem); // what HDF5 says is about its own functions
   }
 }
 } // namespace
@@ -473,7 +473,7 @@ WriteStatisticalModel(const StatisticalModel * model, const std::string & path)
     throw IOError(path, "the statistical model to write is empty");
   }
   AtomicFile file(path);
-  NamingHdf5File(path, "cannot be written (is the disk full?)", [&] {
+  NamingHdf5File<MachineError>(path, "cannot be written (is the disk full?)", [&] {
     H5::H5File hdf5(file.GetTemporaryPath(), H5F_ACC_TRUNC);
     PutStatismo(hdf5, model->GetContent());
     PutModel(hdf5, model->GetContent());
@@ -486,7 +486,7 @@ WriteMatrices(const std::vector<std::pair<std::string, Eigen::MatrixXd>> & matri
 {
   RequireExtension(path, { ".h5" });
   AtomicFile file(path);
-  NamingHdf5File(path, "cannot be written (is the disk full?)", [&] {
+  NamingHdf5File<MachineError>(path, "cannot be written (is the disk full?)", [&] {
     H5::H5File hdf5(file.GetTemporaryPath(), H5F_ACC_TRUNC);
     for (const auto & [name, matrix] : matrices)
     {
@@ -501,7 +501,7 @@ ReadStatisticalModel(const std::string & path)
 {
   RequireReadableFile(path);
   RequireExtension(path, { ".h5" });
-  return NamingHdf5File(path, "is no statistical model of BoneTK, or cut short or damaged", [&] {
+  return NamingHdf5File<IOError>(path, "is no statistical model of BoneTK, or cut short or damaged", [&] {
     RequireWholeHdf5File(path);
     auto model = StatisticalModel::New();
     model->SetContent(GetModel(H5::H5File(path, H5F_ACC_RDONLY)));

@@ -78,7 +78,7 @@ MoveAll(const std::vector<OutputTransaction::Move> & moves, const std::vector<st
       const int code = errno;
       ::rename(move.former.c_str(), move.to.c_str());
       Undo(moves, i);
-      throw IOError(move.path, std::string("cannot write: ") + std::strerror(code));
+      RefuseToWrite(move.path, "cannot write", code);
     }
   }
   for (const std::string & file : outOfDate)

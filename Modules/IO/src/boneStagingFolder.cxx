@@ -77,7 +77,7 @@ StagingFolder::StagingFolder(const std::string & folder)
   const auto  hold = OutputTransaction::Hold();
   if (mkdtemp(pattern.data()) == nullptr)
   {
-    throw IOError(folder, "cannot be made in " + parent.string() + ": " + std::strerror(errno));
+    RefuseToWrite(folder, "cannot be made in " + parent.string(), errno);
   }
   m_Path = pattern;
   m_Owner = std::make_shared<HiddenFolder>(m_Path);

@@ -203,7 +203,7 @@ WriteRigidTransform(const itk::Euler3DTransform<double> & transform, const std::
   }
   catch (const itk::ExceptionObject &)
   {
-    throw IOError(path, "cannot be written; the disk may be full");
+    throw MachineError(path, "cannot be written; the disk may be full");
   }
   file.Commit();
 }

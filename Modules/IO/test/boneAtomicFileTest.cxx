@@ -2,10 +2,14 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneAtomicFile.h"
+#include "boneIOError.h"
 #include "boneOutputTransaction.h"
 #include "boneStagingFolder.h"
 
 #include "boneTestFiles.h"
+
+#include <cerrno>
+#include <cstring>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,6 +32,26 @@ TEST_F(AtomicFileTest, NothingStandsUnderTheNameBeforeCommit)
   file.Commit();
   EXPECT_THAT(Files(), ElementsAre("a.txt"));
   EXPECT_EQ(ReadText("a.txt"), "content");
+}
+
+TEST(RefuseToWriteTest, WhatAnotherTryMayDoIsTheMachines)
+{
+  for (const int code : { ENOSPC, EDQUOT, EIO, ENOMEM, EFBIG })
+  {
+    EXPECT_THROW(RefuseToWrite("a.txt", "cannot write", code), MachineError) << code;
+  }
+  for (const int code : { ENOENT, EACCES, EROFS, ENAMETOOLONG })
+  {
+    try
+    {
+      RefuseToWrite("a.txt", "cannot write", code);
+    }
+    catch (const IOError & error)
+    {
+      EXPECT_EQ(dynamic_cast<const MachineError *>(&error), nullptr);
+      EXPECT_EQ(std::string(error.what()), std::string("a.txt: cannot write: ") + std::strerror(code));
+    }
+  }
 }
 
 TEST_F(AtomicFileTest, WithoutCommitTheFormerFileStays)

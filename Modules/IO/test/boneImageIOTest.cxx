@@ -146,6 +146,26 @@ TEST_F(ImageIOTest, AnObliqueVolumeIsReadAsWrittenInEveryFormat)
   }
 }
 
+TEST_F(ImageIOTest, VoxelsInAnotherFileAreTold)
+{
+  const auto ct = ObliqueRamp<CTImage>();
+  for (const char * name : { "a.nii.gz", "a.nii", "a.mha", "a.nrrd" })
+  {
+    WriteImage(ct, Path(name));
+    EXPECT_FALSE(HasDetachedVoxels(Path(name))) << name;
+  }
+  for (const char * name : { "b.mhd", "b.nhdr", "b.hdr", "b.img.gz" })
+  {
+    WriteImage(ct, Path(name));
+    EXPECT_TRUE(HasDetachedVoxels(Path(name))) << name;
+  }
+  // Headers of other names, which ITK reads as well.
+  std::filesystem::rename(Path("b.mhd"), Path("c.mha"));
+  std::filesystem::rename(Path("b.nhdr"), Path("c.nrrd"));
+  EXPECT_TRUE(HasDetachedVoxels(Path("c.mha")));
+  EXPECT_TRUE(HasDetachedVoxels(Path("c.nrrd")));
+}
+
 TEST_F(ImageIOTest, PicturesAreWritten)
 {
   auto grey = MakeImage<itk::Image<unsigned char, 2>>({ { 4, 3 } });

@@ -105,5 +105,5 @@ def run(command: str, table: Table, values: Mapping[str, Any]) -> Result:
     words = command.split() + words_of(table, values)
     end = _bonetk.run_command([os.fsencode(word) for word in words], values["progress"])
     if end["exit"] != 0:
-        raise (_bonetk.UsageError if end["exit"] == 2 else _bonetk.DataError)(end["error"])
+        raise {2: _bonetk.UsageError, 3: _bonetk.Error}.get(end["exit"], _bonetk.DataError)(end["error"])
     return Result(end["command"], end["text"], end["warnings"], end["outputs"], end["messages"])

@@ -31,6 +31,10 @@ Translate(std::exception_ptr pointer)
   {
     PyErr_SetString(PyExc_MemoryError, "not enough memory for this input");
   }
+  catch (const bone::MachineError & error)
+  {
+    PyErr_SetString(module.attr("Error").ptr(), error.what());
+  }
   catch (const itk::ExceptionObject & error)
   {
     PyErr_SetString(module.attr("DataError").ptr(), bone::ErrorLine(error).c_str());
@@ -48,7 +52,8 @@ AddExceptions(py::module_ & m)
     return error;
   };
   const py::object error = add("Error",
-                               "An error of BoneTK: one line that says which input, what is wrong and what to do.",
+                               "An error of BoneTK: one line that says which input, what is wrong and what to do. "
+                               "Itself where the disk is full; the program bonetk ends with 3.",
                                py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
   add("DataError", "Data are not what the work needs; the program bonetk ends with 1.", error);
   add("UsageError", "A call that cannot be meant; the program bonetk ends with 2.", error);

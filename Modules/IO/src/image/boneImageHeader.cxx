@@ -3,6 +3,8 @@
  *=========================================================================*/
 #include "boneImageHeader.h"
 
+#include "boneFileName.h"
+#include "boneImageIO.h"
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
@@ -64,7 +66,7 @@ RequireNumbers(const std::string &                        path,
     {
       throw IOError(path, "is no readable image: its header's '" + name + "' holds " + wild);
     }
-    const bool dimensions = name == "NDims" || name == "dimension";
+    const bool   dimensions = name == "NDims" || name == "dimension";
     const double count = std::strtod(text.c_str(), nullptr);
     if (dimensions && !(count >= 1.0 && count <= mostDimensions))
     {
@@ -188,6 +190,25 @@ std::map<std::string, std::string>
 ReadNrrdNotes(std::istream & stream)
 {
   return ReadNrrdLines(stream, true);
+}
+
+bool
+HasDetachedVoxels(const std::string & path)
+{
+  const auto    has = [&path](const char * extension) { return HasExtension(path, extension); };
+  const auto    pairs = { ".nhdr", ".hdr", ".img", ".hdr.gz", ".img.gz" };
+  std::ifstream stream(path, std::ios::binary);
+  if (has(".mha") || has(".mhd"))
+  {
+    const std::string data = ReadMetaHeader(stream)["ElementDataFile"];
+    return data != "LOCAL" && data != "Local" && data != "local";
+  }
+  if (has(".nrrd"))
+  {
+    const auto fields = ReadNrrdHeader(stream);
+    return fields.count("data file") + fields.count("datafile") > 0;
+  }
+  return std::any_of(pairs.begin(), pairs.end(), has);
 }
 
 void

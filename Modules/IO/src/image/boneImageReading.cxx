@@ -162,7 +162,7 @@ LoadImage(const std::string & path, itk::ImageIOBase * io)
   }
   catch (const itk::MemoryAllocationError &)
   {
-    throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
+    throw MachineError(path, "needs more memory than there is (" + SizeText(io) + " voxels)"); // they are all there
   }
   catch (const itk::ExceptionObject &)
   {

@@ -229,7 +229,7 @@ WriteXml(TData * data, AtomicFile & file, FileSize size = FileSize::Quick)
   writer->SetHeaderTypeToUInt64();
   if (writer->Write() == 0 || messages->Any() || writer->GetErrorCode() != vtkErrorCode::NoError)
   {
-    throw IOError(file.GetPath(), "cannot write: " + messages->Text());
+    throw MachineError(file.GetPath(), "cannot write: " + messages->Text());
   }
   file.Write(writer->GetOutputString());
 }
