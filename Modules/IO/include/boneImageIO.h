@@ -7,6 +7,7 @@
 #include "boneIOError.h"
 
 #include <itkImage.h>
+#include <itkImageSource.h>
 #include <itkRGBPixel.h>
 
 #include <string>
@@ -21,6 +22,7 @@ namespace bone
  * \{ */
 using CTImage = itk::Image<float, 3>;
 using LabelImage = itk::Image<short, 3>;
+using VolumeSource = itk::ImageSource<CTImage>;
 using PictureImage = itk::Image<itk::RGBPixel<unsigned char>, 2>;
 
 /** A folder holds several DICOM series, which the message lists. */
@@ -42,7 +44,17 @@ public:
 CTImage::Pointer
 ReadCT(const std::string & path, const std::string & series = "", std::vector<std::string> * notes = nullptr);
 
-/** The same for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. What its header
+/** \brief The same, of which voxels are read where a filter asks for them, by the regions it needs.
+ *
+ * The source's output has its grid and no voxels. All of the file is looked at first, as ReadCT does, a block at a
+ * time; of what is compressed, a few MB are kept by which any part of it is found again. Of a DICOM folder the headers
+ * are looked at first, and the voxels of the slices that are read. Formats that are none of NIfTI-1, MetaImage, NRRD
+ * (each with its voxels in one file, raw or of zlib) and DICOM slices are read as a whole. The output holds what was
+ * asked for last, until it was used. The file must stay as it is while the source is in use. */
+VolumeSource::Pointer
+OpenCT(const std::string & path, const std::string & series = "", std::vector<std::string> * notes = nullptr);
+
+/** ReadCT for a label map, whose voxels must be whole numbers from -32768 to 32767 in whatever type. What its header
  * says of its labels (\ref StatesOneBone) is kept. Refuses a .seg.nrrd with overlapping segments, which ReadLabelFile
  * reads. */
 LabelImage::Pointer
@@ -51,10 +63,6 @@ ReadLabels(const std::string & path);
 /** Reads a radiograph: a 2D image, or a 3D image one pixel thick along its third axis. */
 CTImage::Pointer
 ReadRadiograph(const std::string & path);
-
-/** Whether a volume's voxels lie, or may lie, in another file than the one named. */
-bool
-HasDetachedVoxels(const std::string & path);
 
 /** Write the whole file (with its data file, for formats of two) or none; the format is that of the name's extension
  * (.nii.gz, .mha, .nrrd, .png, ...). What was written is read back before it takes its name, since not every format's

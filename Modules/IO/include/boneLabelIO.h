@@ -29,11 +29,18 @@ struct LabelFile
 {
   std::vector<LabelImage::Pointer> layers; ///< one at least
   std::vector<LabelName>           names;  ///< empty where the file names none
+  /** Of the layer, where it is read by regions: an image does not keep its source. */
+  itk::ProcessObject::Pointer source;
 };
 
 /** Reads a label map, with several layers too; see ReadLabels for what is refused. */
 LabelFile
 ReadLabelFile(const std::string & path);
+
+/** The same, of which a file of one layer is read where a filter asks for it, as OpenCT has it. That a voxel is no
+ * label is found when it is read. */
+LabelFile
+OpenLabelFile(const std::string & path);
 
 /** The names in the header of a label map alone: the segments of a .seg.nrrd of 3D Slicer (Segment0_Name, ...), or the
  * label table in a NIfTI file's extension, as TotalSegmentator and Connectome Workbench write it. None where the file

@@ -73,6 +73,29 @@ TEST_F(DicomSeriesTest, AnEvenSeriesIsReadInTheOrderOfItsPositions)
   }
 }
 
+TEST_F(DicomSeriesTest, SlicesThatAreNotAskedForAreNotRead)
+{
+  for (int k = 0; k < 5; ++k)
+  {
+    WriteSlice(Path(std::to_string(k) + ".dcm"), 10, -30 + 1.25 * k, static_cast<short>(100 * k), "1");
+  }
+  const auto             whole = ReadCT(m_Folder.string());
+  const auto             source = OpenCT(m_Folder.string());
+  const CTImage::Pointer ct = source->GetOutput();
+  EXPECT_EQ(ct->GetLargestPossibleRegion(), whole->GetLargestPossibleRegion());
+  EXPECT_EQ(ct->GetOrigin(), whole->GetOrigin());
+  EXPECT_EQ(ct->GetSpacing(), whole->GetSpacing());
+  std::filesystem::remove(Path("4.dcm"));
+  const CTImage::RegionType region({ { 1, 2, 1 } }, { { 3, 2, 2 } });
+  ct->SetRequestedRegion(region);
+  ct->Update();
+  EXPECT_EQ(ct->GetBufferedRegion(), region);
+  EXPECT_EQ(ct->GetPixel({ { 1, 2, 1 } }), 100.0f);
+  EXPECT_EQ(ct->GetPixel({ { 3, 3, 2 } }), 200.0f);
+  ct->SetRequestedRegionToLargestPossibleRegion();
+  EXPECT_THAT(ErrorOf([&] { ct->Update(); }), HasSubstr("is no readable DICOM series"));
+}
+
 TEST_F(DicomSeriesTest, RefusesAMissingSlice)
 {
   for (int k = 0; k < 9; ++k)

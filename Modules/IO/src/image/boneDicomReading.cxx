@@ -58,35 +58,87 @@ RequireEvenSpacing(const DicomSeries & series, const CTImage * image, const std:
                       " mm (tilted gantry): resample it to an orthogonal grid"));
   }
 }
+
+/** Reads the slices of the region asked for alone. */
+class SeriesReader : public itk::ImageSeriesReader<CTImage>
+{
+public:
+  using Self = SeriesReader;
+  using Superclass = itk::ImageSeriesReader<CTImage>;
+  using Pointer = itk::SmartPointer<Self>;
+
+  itkFactorylessNewMacro(Self);
+
+  void
+  SetFolder(const std::string & folder)
+  {
+    m_Folder = folder;
+  }
+
+protected:
+  void
+  GenerateOutputInformation() override
+  {
+    this->Read([this] { Superclass::GenerateOutputInformation(); });
+  }
+  void
+  GenerateData() override
+  {
+    this->Read([this] { Superclass::GenerateData(); });
+    RequireFinite(this->GetOutput(), m_Folder);
+  }
+
+private:
+  template <typename TAction>
+  void
+  Read(const TAction & action)
+  {
+    const QuietItk quiet;
+    try
+    {
+      action();
+    }
+    catch (const itk::ExceptionObject &)
+    {
+      throw IOError(m_Folder,
+                    "is no readable DICOM series: its slices differ in size or place, or are compressed in a way that "
+                    "is not known");
+    }
+  }
+
+  std::string m_Folder;
+};
 } // namespace
 
-CTImage::Pointer
-ReadDicomFolder(const std::string & folder, const std::string & wanted, std::vector<std::string> & notes)
+VolumeSource::Pointer
+OpenDicomFolder(const std::string &        folder,
+                const std::string &        wanted,
+                std::vector<std::string> & notes,
+                Reading                    reading)
 {
   const DicomSeries series = FindDicomSeries(folder, wanted, notes);
   if (series.size() == 1)
   {
-    return ReadCT(series.front().path); // of several frames
+    return OpenVolume(series.front().path, "", notes, reading); // of several frames
   }
   std::vector<std::string> files;
   std::transform(
     series.begin(), series.end(), std::back_inserter(files), [](const DicomHeader & slice) { return slice.path; });
-  auto reader = itk::ImageSeriesReader<CTImage>::New();
+  auto reader = SeriesReader::New();
+  reader->SetFolder(folder);
   reader->SetImageIO(itk::GDCMImageIO::New());
   reader->SetFileNames(files);
-  try
+  reader->MetaDataDictionaryArrayUpdateOff(); // it would be read of all slices
+  reader->UpdateOutputInformation();
+  RequireEvenSpacing(series, reader->GetOutput(), folder);
+  if (reading == Reading::Whole)
   {
     reader->Update();
   }
-  catch (const itk::ExceptionObject &)
+  else
   {
-    throw IOError(folder,
-                  "is no readable DICOM series: its slices differ in size or place, or are compressed in a way that is "
-                  "not known");
+    reader->GetOutput()->ReleaseDataFlagOn();
   }
-  CTImage::Pointer image = reader->GetOutput();
-  RequireEvenSpacing(series, image, folder);
-  image->DisconnectPipeline();
-  return image;
+  return reader.GetPointer();
 }
 } // namespace bone

@@ -14,6 +14,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -30,10 +32,14 @@ struct NiftiHeader
   bool        valid{ false };
   bool        swapped{ false };
   bool        single{ false }; // header and data in one file
+  bool        analyze{ true }; // no NIfTI file, but one of Analyze 7.5
+  bool        placed{ false }; // by qform or sform
   int         datatype{ 0 };
   std::size_t voxels{ 1 };
   std::size_t bytes{ 0 };
   std::size_t offset{ 0 };
+  double      slope{ 0.0 };
+  double      intercept{ 0.0 };
 };
 
 NiftiHeader
@@ -58,7 +64,12 @@ ReadNiftiHeader(const std::string & path)
   header.datatype = Decode<std::int16_t>(&raw[70], header.swapped);
   header.bytes = header.voxels * static_cast<std::size_t>(Decode<std::int16_t>(&raw[72], header.swapped)) / 8;
   header.offset = static_cast<std::size_t>(std::max(0.0f, Decode<float>(&raw[108], header.swapped)));
+  header.slope = Decode<float>(&raw[112], header.swapped);
+  header.intercept = Decode<float>(&raw[116], header.swapped);
+  header.placed =
+    Decode<std::int16_t>(&raw[252], header.swapped) > 0 || Decode<std::int16_t>(&raw[254], header.swapped) > 0;
   header.single = std::memcmp(&raw[344], "n+1", 3) == 0;
+  header.analyze = !header.single && std::memcmp(&raw[344], "ni1", 3) != 0;
   return header;
 }
 
@@ -84,7 +95,7 @@ PairMember(const std::string & path, const std::string & extension)
 
 template <typename T>
 void
-CountNotFinite(const std::vector<char> & block, bool swapped, std::size_t before, ImageFileCheck & check)
+CountNotFinite(const std::vector<char> & block, bool swapped, std::size_t before, VoxelCheck & check)
 {
   for (std::size_t i = 0; i + sizeof(T) <= block.size(); i += sizeof(T))
   {
@@ -95,83 +106,69 @@ CountNotFinite(const std::vector<char> & block, bool swapped, std::size_t before
   }
 }
 
-// Whether the compressed stream ends as it must, so that its checksum was compared too.
-bool
-EndsWell(gzFile file)
+/** The type of NIfTI's code; unknown where it is none of one number. */
+itk::IOComponentEnum
+NiftiComponent(int datatype)
 {
-  char      more = 0;
-  int       error = Z_OK;
-  const int read = gzread(file, &more, 1);
-  gzerror(file, &error);
-  return read >= 0 && error != Z_BUF_ERROR;
+  using Type = itk::IOComponentEnum;
+  static const std::map<int, Type> types{ { 2, Type::UCHAR },       { 4, Type::SHORT },   { 8, Type::INT },
+                                          { 16, Type::FLOAT },      { 64, Type::DOUBLE }, { 256, Type::CHAR },
+                                          { 512, Type::USHORT },    { 768, Type::UINT },  { 1024, Type::LONGLONG },
+                                          { 1280, Type::ULONGLONG } };
+  const auto                       found = types.find(datatype);
+  return found == types.end() ? Type::UNKNOWNCOMPONENTTYPE : found->second;
 }
 
-ImageFileCheck
-CheckNifti(const std::string & path)
+bool
+IsGzip(const std::string & path)
 {
-  constexpr int  floatType = 16, doubleType = 64;
-  ImageFileCheck check;
-  const bool     pair = HasExtension(path, ".img") || HasExtension(path, ".img.gz") || HasExtension(path, ".hdr") ||
+  std::ifstream file(path, std::ios::binary);
+  const int     first = file.get();
+  return first == 0x1f && file.get() == 0x8b;
+}
+
+/** Whether and how ITK scales what is read, by the type that it says it reads; not plain where that cannot be told. */
+void
+SetScale(const NiftiHeader & header, const itk::ImageIOBase * io, ImageVoxels & voxels)
+{
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  using Type = itk::IOComponentEnum;
+  voxels.slope = std::abs(header.slope) < epsilon ? 1.0 : header.slope;
+  voxels.intercept = header.intercept;
+  const bool scale = std::abs(voxels.slope - 1.0) > epsilon || std::abs(voxels.intercept) > epsilon;
+  const Type type = voxels.component;
+  const bool whole = type != Type::FLOAT && type != Type::DOUBLE;
+  voxels.rescaled = whole ? io->GetComponentType() == Type::FLOAT : scale;
+  voxels.plain = voxels.plain && (whole ? !voxels.rescaled || scale : io->GetComponentType() == type) &&
+                 (whole || !scale || header.placed);
+}
+
+ImageVoxels
+FindNiftiVoxels(const std::string & path, const itk::ImageIOBase * io)
+{
+  constexpr std::size_t headerSize = 348;
+  ImageVoxels           voxels;
+  const bool pair = HasExtension(path, ".img") || HasExtension(path, ".img.gz") || HasExtension(path, ".hdr") ||
                     HasExtension(path, ".hdr.gz");
   const NiftiHeader header = ReadNiftiHeader(pair ? PairMember(path, ".hdr") : path);
-  check.known = header.valid || !header.readable;
-  check.whole = header.readable;
+  voxels.known = header.valid || !header.readable;
+  voxels.whole = header.readable;
   if (!header.valid)
   {
-    return check;
+    return voxels;
   }
-  const GzFile      file = OpenGz(header.single ? path : PairMember(path, ".img"));
-  std::vector<char> block(std::size_t{ 1 } << 20);
-  check.whole = file != nullptr && gzseek(file.get(), static_cast<z_off_t>(header.offset), SEEK_SET) >= 0;
-  for (std::size_t done = 0; check.whole && done < header.bytes; done += block.size())
-  {
-    block.resize(std::min(block.size(), header.bytes - done));
-    check.whole =
-      gzread(file.get(), block.data(), static_cast<unsigned int>(block.size())) == static_cast<int>(block.size());
-    if (check.whole && header.datatype == floatType)
-    {
-      CountNotFinite<float>(block, header.swapped, done, check);
-    }
-    if (check.whole && header.datatype == doubleType)
-    {
-      CountNotFinite<double>(block, header.swapped, done, check);
-    }
-  }
-  check.whole = check.whole && EndsWell(file.get());
-  return check;
-}
-
-/** Whether a file's bytes from `offset` on are one stream of zlib or gzip that ends, with its checksum, after
- * `numberOfBytes`. */
-bool
-Inflates(const fs::path & path, std::size_t offset, std::size_t numberOfBytes)
-{
-  constexpr int     anyHeader = 15 + 32;
-  std::ifstream     file(path, std::ios::binary);
-  std::vector<char> from(std::size_t{ 1 } << 18), to(std::size_t{ 1 } << 20);
-  file.seekg(static_cast<std::streamoff>(offset));
-  z_stream stream{};
-  if (!file || inflateInit2(&stream, anyHeader) != Z_OK)
-  {
-    return false;
-  }
-  int         state = Z_OK;
-  std::size_t bytes = 0;
-  while (state == Z_OK && bytes <= numberOfBytes)
-  {
-    if (stream.avail_in == 0)
-    {
-      file.read(from.data(), static_cast<std::streamsize>(from.size()));
-      stream.next_in = reinterpret_cast<Bytef *>(from.data());
-      stream.avail_in = static_cast<uInt>(file.gcount());
-    }
-    stream.next_out = reinterpret_cast<Bytef *>(to.data());
-    stream.avail_out = static_cast<uInt>(to.size());
-    state = inflate(&stream, Z_NO_FLUSH); // Z_BUF_ERROR where the file has no more
-    bytes += to.size() - stream.avail_out;
-  }
-  inflateEnd(&stream);
-  return state == Z_STREAM_END && bytes == numberOfBytes;
+  VoxelPlace        place{ header.single ? path : PairMember(path, ".img") };
+  const std::size_t offset = header.single ? std::max(header.offset, headerSize) : header.offset;
+  place.compressed = IsGzip(place.path);
+  (place.compressed ? place.skip : place.start) = offset;
+  place.bytes = header.bytes;
+  place.mayGoOn = true;
+  voxels.component = NiftiComponent(header.datatype);
+  voxels.swapped = header.swapped;
+  voxels.plain = !header.analyze && voxels.component != itk::IOComponentEnum::UNKNOWNCOMPONENTTYPE;
+  SetScale(header, io, voxels);
+  voxels.place = std::move(place);
+  return voxels;
 }
 
 /** Whether the names that follow are those of files, and there are some. */
@@ -201,46 +198,53 @@ IsFilePattern(const std::string & data)
   return text >> name >> first >> last >> step && first >= 0 && last >= first && step > 0;
 }
 
-ImageFileCheck
-CheckMetaImage(const std::string & path, std::size_t numberOfBytes)
+bool
+IsTrue(const std::string & text)
 {
-  ImageFileCheck    check;
+  return !text.empty() && (text[0] == 'T' || text[0] == 't');
+}
+
+ImageVoxels
+FindMetaVoxels(const std::string & path, const itk::ImageIOBase * io)
+{
+  ImageVoxels       voxels;
   std::ifstream     stream(path, std::ios::binary);
   auto              fields = ReadMetaHeader(stream);
   const std::string data = fields["ElementDataFile"];
-  const auto isTrue = [](const std::string & text) { return !text.empty() && (text[0] == 'T' || text[0] == 't'); };
   if (data.rfind("LIST", 0) == 0 || data.find('%') != std::string::npos)
   {
-    check.known = true;
-    check.whole = data[0] == 'L' ? ListedFilesExist(stream, fs::path(path).parent_path()) : IsFilePattern(data);
-    return check;
+    voxels.known = true;
+    voxels.whole = data[0] == 'L' ? ListedFilesExist(stream, fs::path(path).parent_path()) : IsFilePattern(data);
+    return voxels;
   }
-  if (!stream || !isTrue(fields["BinaryData"]))
+  if (!stream || !IsTrue(fields["BinaryData"]))
   {
-    return check;
+    return voxels;
   }
-  check.known = true;
-  const bool      local = data == "LOCAL" || data == "Local" || data == "local";
-  const auto      start = local ? static_cast<std::size_t>(stream.tellg()) : 0;
-  const fs::path  file = local ? fs::path(path) : fs::path(path).parent_path() / data;
-  std::error_code error;
-  const auto      size = fs::file_size(file, error);
+  voxels.known = true;
+  const bool local = data == "LOCAL" || data == "Local" || data == "local";
+  VoxelPlace place{ local ? path : (fs::path(path).parent_path() / data).string() };
+  place.start = local ? static_cast<std::size_t>(stream.tellg()) : 0;
+  place.bytes = static_cast<std::size_t>(io->GetImageSizeInBytes());
+  place.compressed = IsTrue(fields["CompressedData"]);
   // MetaIO asks for as much memory as the header says that the compressed data need; 0 where it does not say.
-  const double compressed = std::strtod(fields["CompressedDataSize"].c_str(), nullptr);
-  check.whole = !error && numberOfBytes > 0 && compressed >= 0.0 && compressed <= static_cast<double>(size);
-  if (check.whole)
-  {
-    check.whole =
-      isTrue(fields["CompressedData"]) ? Inflates(file, start, numberOfBytes) : size >= start + numberOfBytes;
-  }
-  return check;
+  std::error_code error;
+  const auto      size = fs::file_size(place.path, error);
+  const double    compressed = std::strtod(fields["CompressedDataSize"].c_str(), nullptr);
+  voxels.whole = !error && compressed >= 0.0 && compressed <= static_cast<double>(size);
+  const bool twoOrders = fields.count("BinaryDataByteOrderMSB") > 0 && fields.count("ElementByteOrderMSB") > 0;
+  voxels.plain = fields.count("HeaderSize") == 0 && !twoOrders;
+  voxels.swapped = IsTrue(fields["BinaryDataByteOrderMSB"] + fields["ElementByteOrderMSB"]);
+  voxels.component = io->GetComponentType();
+  voxels.place = std::move(place);
+  return voxels;
 }
 
 /** Data in one file, raw or gzip. */
-ImageFileCheck
-CheckNrrd(const std::string & path, std::size_t numberOfBytes)
+ImageVoxels
+FindNrrdVoxels(const std::string & path, const itk::ImageIOBase * io)
 {
-  ImageFileCheck    check;
+  ImageVoxels       voxels;
   std::ifstream     stream(path, std::ios::binary);
   auto              fields = ReadNrrdHeader(stream);
   const std::string data = fields["data file"] + fields["datafile"], encoding = fields["encoding"];
@@ -250,35 +254,54 @@ CheckNrrd(const std::string & path, std::size_t numberOfBytes)
   if (skips || (!gzip && encoding != "raw") || data.find('%') != std::string::npos || data.rfind("LIST", 0) == 0 ||
       (data.empty() && !stream))
   {
-    return check;
+    return voxels;
   }
-  check.known = true;
-  const fs::path    file = data.empty() ? fs::path(path) : fs::path(path).parent_path() / data;
-  const std::size_t start = data.empty() ? static_cast<std::size_t>(stream.tellg()) : 0;
-  std::error_code   error;
-  const auto        size = fs::file_size(file, error);
-  check.whole =
-    !error && numberOfBytes > 0 && (gzip ? Inflates(file, start, numberOfBytes) : size >= start + numberOfBytes);
-  return check;
+  voxels.known = true;
+  VoxelPlace place{ data.empty() ? path : (fs::path(path).parent_path() / data).string() };
+  place.start = data.empty() ? static_cast<std::size_t>(stream.tellg()) : 0;
+  place.bytes = static_cast<std::size_t>(io->GetImageSizeInBytes());
+  place.compressed = gzip;
+  const std::string endian = fields["endian"];
+  voxels.plain = fields["dimension"] == "3" && (endian == "little" || endian == "big" || io->GetComponentSize() == 1);
+  voxels.swapped = endian == "big";
+  voxels.component = io->GetComponentType();
+  voxels.place = std::move(place);
+  return voxels;
 }
 } // namespace
 
-ImageFileCheck
-CheckImageFile(const std::string & path, const itk::ImageIOBase * io)
+ImageVoxels
+FindVoxels(const std::string & path, const itk::ImageIOBase * io)
 {
   const std::string format = io->GetNameOfClass();
-  if (format == "NiftiImageIO")
-  {
-    return CheckNifti(path);
-  }
-  if (format == "MetaImageIO")
-  {
-    return CheckMetaImage(path, static_cast<std::size_t>(io->GetImageSizeInBytes()));
-  }
-  if (format == "NrrdImageIO")
-  {
-    return CheckNrrd(path, static_cast<std::size_t>(io->GetImageSizeInBytes()));
-  }
-  return {};
+  ImageVoxels       voxels = format == "NiftiImageIO"  ? FindNiftiVoxels(path, io)
+                             : format == "MetaImageIO" ? FindMetaVoxels(path, io)
+                             : format == "NrrdImageIO" ? FindNrrdVoxels(path, io)
+                                                       : ImageVoxels();
+  voxels.plain = voxels.plain && io->GetNumberOfComponents() == 1;
+  return voxels;
+}
+
+VoxelCheck
+CheckVoxels(const ImageVoxels & voxels, VoxelFile & file)
+{
+  VoxelCheck  check;
+  std::size_t done = 0;
+  const auto  count = [&](const std::vector<char> & block) {
+    if (voxels.component == itk::IOComponentEnum::FLOAT)
+    {
+      CountNotFinite<float>(block, voxels.swapped, done, check);
+    }
+    else
+    {
+      CountNotFinite<double>(block, voxels.swapped, done, check);
+    }
+    done += block.size();
+  };
+  const bool mayBeNotFinite =
+    voxels.component == itk::IOComponentEnum::FLOAT || voxels.component == itk::IOComponentEnum::DOUBLE;
+  check.whole = file.IsLongEnough() &&
+                (mayBeNotFinite ? file.Scan(count) : file.Scan(std::function<void(const std::vector<char> &)>()));
+  return check;
 }
 } // namespace bone

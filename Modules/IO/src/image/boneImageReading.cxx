@@ -7,6 +7,7 @@
 #include "boneImageHeader.h"
 #include "boneParameters.h"
 #include "boneRefuse.h"
+#include "boneRegionImageIO.h"
 #include "boneSformImageIO.h"
 #include "boneVtkFile.h"
 
@@ -126,14 +127,11 @@ NotFiniteText(std::size_t count, const CTImage::IndexType & first)
 }
 
 void
-RequireWholeFile(const std::string & path, const itk::ImageIOBase * io)
+RequireSound(const std::string & path, const itk::ImageIOBase * io, const VoxelCheck & check)
 {
-  const ImageFileCheck check = CheckImageFile(path, io);
   if (!check.whole)
   {
-    throw IOError(path,
-                  "is cut short or damaged: its voxels are not all there, or do not agree with their checksum; copy it "
-                  "again from where it came");
+    ThrowNotWhole(path);
   }
   if (check.notFinite > 0)
   {
@@ -148,26 +146,80 @@ RequireWholeFile(const std::string & path, const itk::ImageIOBase * io)
   }
 }
 
-template <typename TImage>
-typename TImage::Pointer
-LoadImage(const std::string & path, itk::ImageIOBase * io)
+template <typename TReader>
+void
+UpdateReader(TReader * reader, const std::string & path, const itk::ImageIOBase * io)
 {
-  RequireWholeFile(path, io);
-  auto reader = itk::ImageFileReader<TImage>::New();
-  reader->SetImageIO(io);
-  reader->SetFileName(path);
   try
   {
     reader->Update();
   }
+  catch (const IOError &)
+  {
+    throw;
+  }
   catch (const itk::MemoryAllocationError &)
   {
-    throw MachineError(path, "needs more memory than there is (" + SizeText(io) + " voxels)"); // they are all there
+    throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
   }
   catch (const itk::ExceptionObject &)
   {
     throw IOError(path, "is no readable image: its voxels are damaged, or compressed in a way that is not known");
   }
+}
+
+/** A reader of the image, up to date but where it is to read by regions and can: it has looked at the file as a whole
+ * then, and its output has no voxels yet. */
+template <typename TImage>
+typename itk::ImageFileReader<TImage>::Pointer
+OpenVoxels(const std::string & path, itk::ImageIOBase * io, Reading reading)
+{
+  const ImageVoxels          voxels = FindVoxels(path, io);
+  std::shared_ptr<VoxelFile> file;
+  if (!voxels.whole)
+  {
+    ThrowNotWhole(path);
+  }
+  if (voxels.place)
+  {
+    file = std::make_shared<VoxelFile>(*voxels.place);
+    if (!file->IsLongEnough())
+    {
+      ThrowNotWhole(path);
+    }
+    // Plain voxels that are all read are looked at as they come.
+    if (!voxels.plain || reading == Reading::ByRegion)
+    {
+      RequireSound(path, io, CheckVoxels(voxels, *file));
+    }
+  }
+  auto reader = itk::ImageFileReader<TImage>::New();
+  reader->SetFileName(path);
+  if (voxels.plain)
+  {
+    reader->SetImageIO(ReadByRegion(io, voxels, file));
+  }
+  else
+  {
+    reader->SetImageIO(io);
+  }
+  if (voxels.plain && reading == Reading::ByRegion)
+  {
+    reader->GetOutput()->ReleaseDataFlagOn();
+    reader->UpdateOutputInformation();
+  }
+  else
+  {
+    UpdateReader(reader.GetPointer(), path, io);
+  }
+  return reader;
+}
+
+template <typename TImage>
+typename TImage::Pointer
+LoadImage(const std::string & path, itk::ImageIOBase * io)
+{
+  const auto               reader = OpenVoxels<TImage>(path, io, Reading::Whole);
   typename TImage::Pointer image = reader->GetOutput();
   image->DisconnectPipeline();
   return image;
@@ -190,6 +242,14 @@ RequireVolume(const std::string & path, const itk::ImageIOBase * io)
   }
 }
 } // namespace
+
+void
+ThrowNotWhole(const std::string & path)
+{
+  throw IOError(path,
+                "is cut short or damaged: its voxels are not all there, or do not agree with their checksum; copy it "
+                "again from where it came");
+}
 
 void
 RequireSensibleGrid(const CTImage * image, const std::string & path)
@@ -220,14 +280,14 @@ RequireSensibleGrid(const CTImage * image, const std::string & path)
   }
 }
 
-CTImage::Pointer
-ReadVolume(const std::string & path, const std::string & series, std::vector<std::string> & notes)
+VolumeSource::Pointer
+OpenVolume(const std::string & path, const std::string & series, std::vector<std::string> & notes, Reading reading)
 {
   const QuietItk  quiet;
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
   {
-    return ReadDicomFolder(path, series, notes);
+    return OpenDicomFolder(path, series, notes, reading);
   }
   if (!series.empty())
   {
@@ -236,7 +296,7 @@ ReadVolume(const std::string & path, const std::string & series, std::vector<std
   const auto io = OpenImage(path);
   RequireOneComponent(path, io);
   RequireVolume(path, io);
-  return LoadImage<CTImage>(path, io);
+  return OpenVoxels<CTImage>(path, io, reading).GetPointer();
 }
 
 itk::VectorImage<float, 3>::Pointer
@@ -270,10 +330,22 @@ CTImage::Pointer
 ReadCT(const std::string & path, const std::string & series, std::vector<std::string> * notes)
 {
   std::vector<std::string> unread;
-  const auto               image = ReadVolume(path, series, notes == nullptr ? unread : *notes);
+  const auto               source = OpenVolume(path, series, notes == nullptr ? unread : *notes, Reading::Whole);
+  CTImage::Pointer         image = source->GetOutput();
+  image->DisconnectPipeline();
   RequireFinite(image, path);
   RequireSensibleGrid(image, path);
   return image;
+}
+
+VolumeSource::Pointer
+OpenCT(const std::string & path, const std::string & series, std::vector<std::string> * notes)
+{
+  std::vector<std::string> unread;
+  VolumeSource::Pointer    source = OpenVolume(path, series, notes == nullptr ? unread : *notes, Reading::ByRegion);
+  RequireFinite(source->GetOutput(), path); // of what is read by now
+  RequireSensibleGrid(source->GetOutput(), path);
+  return source;
 }
 
 CTImage::Pointer

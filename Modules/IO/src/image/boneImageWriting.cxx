@@ -44,12 +44,18 @@ ReadBack(const std::string & file, std::size_t numberOfPixels)
   {
     Refuse("what was written cannot be read back whole (is the disk full?)");
   }
-  const ImageFileCheck check = CheckImageFile(file, io);
-  if (!check.whole)
+  const ImageVoxels voxels = FindVoxels(file, io);
+  bool              whole = voxels.whole;
+  if (whole && voxels.place)
+  {
+    VoxelFile written(*voxels.place);
+    whole = CheckVoxels(voxels, written).whole;
+  }
+  if (!whole)
   {
     Refuse("what was written cannot be read back whole (is the disk full?)");
   }
-  if (!check.known)
+  if (!voxels.known)
   {
     io->SetIORegion(region);
     std::vector<char> buffer(io->GetImageSizeInBytes());
@@ -161,7 +167,7 @@ Write(const TImage * image, const std::string & path, bool compress)
   }
   catch (const itk::ExceptionObject & error)
   {
-    throw MachineError(path, "cannot write: " + ErrorLine(error));
+    throw IOError(path, "cannot write: " + ErrorLine(error));
   }
   file.Commit();
 }

@@ -8,6 +8,7 @@
 #include "boneVtkFile.h"
 
 #include <itkImageRegionConstIteratorWithIndex.h>
+#include <itkImageToImageFilter.h>
 #include <itkVectorImage.h>
 #include <itkVectorIndexSelectionCastImageFilter.h>
 
@@ -19,39 +20,83 @@ namespace bone
 {
 namespace
 {
+/** Whole numbers of a volume as labels, by the regions asked for. */
+class LabelFilter : public itk::ImageToImageFilter<CTImage, LabelImage>
+{
+public:
+  using Self = LabelFilter;
+  using Superclass = itk::ImageToImageFilter<CTImage, LabelImage>;
+  using Pointer = itk::SmartPointer<Self>;
+
+  itkFactorylessNewMacro(Self);
+
+  void
+  SetPath(const std::string & path)
+  {
+    m_Path = path;
+  }
+  /** Which is kept for as long as this: an image does not keep its source. */
+  void
+  SetSource(VolumeSource * source)
+  {
+    m_Source = source;
+    this->SetInput(source->GetOutput());
+  }
+
+protected:
+  void
+  GenerateOutputInformation() override
+  {
+    Superclass::GenerateOutputInformation();
+    if (StatesOneBone(*this->GetInput()))
+    {
+      StateOneBone(*this->GetOutput());
+    }
+  }
+  void
+  GenerateData() override
+  {
+    using Limits = std::numeric_limits<LabelImage::PixelType>;
+    const CTImage * values = this->GetInput();
+    RequireFinite(values, m_Path);
+    this->AllocateOutputs();
+    const CTImage::RegionType                       region = this->GetOutput()->GetRequestedRegion();
+    LabelImage::PixelType *                         label = this->GetOutput()->GetBufferPointer();
+    itk::ImageRegionConstIteratorWithIndex<CTImage> it(values, region);
+    for (; !it.IsAtEnd(); ++it, ++label)
+    {
+      const float value = it.Get();
+      if (!(value >= Limits::lowest() && value <= Limits::max()) || value != std::floor(value))
+      {
+        throw IOError(m_Path,
+                      Say("is no label map: its value at ",
+                          it.GetIndex(),
+                          " is ",
+                          value,
+                          ", no whole number from ",
+                          Limits::lowest(),
+                          " to ",
+                          Limits::max()));
+      }
+      *label = static_cast<LabelImage::PixelType>(value);
+    }
+  }
+
+private:
+  std::string           m_Path;
+  VolumeSource::Pointer m_Source;
+};
+
 LabelImage::Pointer
 ToLabels(const CTImage * values, const std::string & path)
 {
-  using Limits = std::numeric_limits<LabelImage::PixelType>;
-  RequireFinite(values, path);
+  const auto filter = LabelFilter::New();
+  filter->SetPath(path);
+  filter->SetInput(values);
   RequireSensibleGrid(values, path);
-  auto labels = LabelImage::New();
-  labels->CopyInformation(values);
-  labels->SetRegions(values->GetBufferedRegion());
-  labels->Allocate();
-  LabelImage::PixelType *                         label = labels->GetBufferPointer();
-  itk::ImageRegionConstIteratorWithIndex<CTImage> it(values, values->GetBufferedRegion());
-  for (; !it.IsAtEnd(); ++it, ++label)
-  {
-    const float value = it.Get();
-    if (!(value >= Limits::lowest() && value <= Limits::max()) || value != std::floor(value))
-    {
-      throw IOError(path,
-                    Say("is no label map: its value at ",
-                        it.GetIndex(),
-                        " is ",
-                        value,
-                        ", no whole number from ",
-                        Limits::lowest(),
-                        " to ",
-                        Limits::max()));
-    }
-    *label = static_cast<LabelImage::PixelType>(value);
-  }
-  if (StatesOneBone(*values))
-  {
-    StateOneBone(*labels);
-  }
+  filter->Update();
+  LabelImage::Pointer labels = filter->GetOutput();
+  labels->DisconnectPipeline();
   return labels;
 }
 
@@ -72,10 +117,8 @@ ReadLayers(const std::string & path)
   }
   return layers;
 }
-} // namespace
-
 LabelFile
-ReadLabelFile(const std::string & path)
+ReadFile(const std::string & path, Reading reading)
 {
   LabelFile file;
   file.names = ReadLabelNames(path);
@@ -83,7 +126,14 @@ ReadLabelFile(const std::string & path)
   if (file.layers.empty())
   {
     std::vector<std::string> notes;
-    file.layers = { ToLabels(ReadVolume(path, "", notes), path) };
+    const auto               source = OpenVolume(path, "", notes, reading);
+    RequireSensibleGrid(source->GetOutput(), path);
+    const auto filter = LabelFilter::New();
+    filter->SetPath(path);
+    filter->SetSource(source);
+    filter->UpdateOutputInformation();
+    file.source = filter;
+    file.layers = { filter->GetOutput() };
     for (LabelName & name : file.names)
     {
       name.layer = 0;
@@ -95,6 +145,31 @@ ReadLabelFile(const std::string & path)
     {
       throw IOError(path, "names the segment '" + name.name + "' in a layer that it does not have");
     }
+  }
+  return file;
+}
+} // namespace
+
+LabelFile
+ReadLabelFile(const std::string & path)
+{
+  LabelFile file = ReadFile(path, Reading::Whole);
+  if (file.source)
+  {
+    file.layers.front()->Update();
+    file.layers.front()->DisconnectPipeline();
+    file.source = nullptr;
+  }
+  return file;
+}
+
+LabelFile
+OpenLabelFile(const std::string & path)
+{
+  LabelFile file = ReadFile(path, Reading::ByRegion);
+  if (file.source)
+  {
+    file.layers.front()->ReleaseDataFlagOn();
   }
   return file;
 }
