@@ -22,13 +22,17 @@ AddSeriesOption(CLI::App * command, std::string & series)
     "--series", series, "Number, UID or description of the DICOM series to read, where the CT's folder has several");
 }
 
-CTImage::Pointer
-ReadChosenCT(const std::string & path, const std::string & series, Session & session)
+namespace
+{
+/** What `read` makes of a CT, with the notes on it told. */
+template <typename TRead>
+auto
+ReadChosen(const TRead & read, const std::string & path, const std::string & series, Session & session)
 {
   try
   {
     std::vector<std::string> notes;
-    CTImage::Pointer         ct = ReadCT(path, series, &notes);
+    auto                     ct = read(path, series, &notes);
     for (const std::string & note : notes)
     {
       session.Warn(path + ": " + note);
@@ -39,6 +43,19 @@ ReadChosenCT(const std::string & path, const std::string & series, Session & ses
   {
     throw UsageError(ErrorLine(error) + ". Choose one with --series");
   }
+}
+} // namespace
+
+CTImage::Pointer
+ReadChosenCT(const std::string & path, const std::string & series, Session & session)
+{
+  return ReadChosen(ReadCT, path, series, session);
+}
+
+VolumeSource::Pointer
+OpenChosenCT(const std::string & path, const std::string & series, Session & session)
+{
+  return ReadChosen(OpenCT, path, series, session);
 }
 
 CLI::Option *
@@ -130,9 +147,9 @@ ChooseNamed(const LabelFile & file, const LabelOptions & options)
 }
 
 LabelFile
-ReadNamedLabels(const LabelOptions & options)
+ReadNamedLabels(const LabelOptions & options, bool byRegion = false)
 {
-  LabelFile file = ReadLabelFile(options.file);
+  LabelFile file = byRegion ? OpenLabelFile(options.file) : ReadLabelFile(options.file);
   if (options.names.empty())
   {
     return file;
@@ -182,27 +199,31 @@ VoxelsOfSurface(const LabelOptions & options, const itk::ImageBase<3> * ct)
   {
     throw IOError(options.file, "holds no voxel of the CT: is it in mm and in LPS, the CT's coordinates?");
   }
-  return { { labels, 1, "" } };
+  return { { labels, 1, "", CountLabels(labels).front().region, nullptr } };
 }
 } // namespace
 
 std::vector<LabelledBone>
-ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session)
+ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session, bool byRegion)
 {
   if (IsSurfaceFile(options.file))
   {
     return VoxelsOfSurface(options, ct);
   }
-  std::vector<LabelledBone>                         bones = ChooseNamed(ReadNamedLabels(options), options);
+  std::vector<LabelledBone>                         bones = ChooseNamed(ReadNamedLabels(options, byRegion), options);
   std::map<const LabelImage *, LabelImage::Pointer> onGrid; // bones share a label map
   for (LabelledBone & bone : bones)
   {
+    if (ct == nullptr || (byRegion && IsSameGrid(ct, bone.labels)))
+    {
+      continue;
+    }
     LabelImage::Pointer & labels = onGrid[bone.labels];
     if (labels.IsNull())
     {
-      labels = ct == nullptr ? bone.labels : BringToGrid(bone.labels, ct, options.file, session);
+      labels = BringToGrid(bone.labels, ct, options.file, session);
     }
-    bone.labels = labels;
+    bone = { labels, bone.label, bone.name, {}, nullptr };
   }
   return bones;
 }
@@ -214,13 +235,13 @@ ReadLabelsOnGrid(const std::string & path, const itk::ImageBase<3> * ct, Session
 }
 
 std::vector<BoneInput>
-ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session)
+ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session, bool byRegion)
 {
   options.Verify();
   std::vector<BoneInput> inputs;
   if (!options.labels.file.empty())
   {
-    for (LabelledBone & bone : ReadBoneLabels(options.labels, ct, session))
+    for (LabelledBone & bone : ReadBoneLabels(options.labels, ct, session, byRegion))
     {
       inputs.push_back({ std::move(bone), nullptr });
     }

@@ -24,6 +24,10 @@ AddSeriesOption(CLI::App * command, std::string & series);
 CTImage::Pointer
 ReadChosenCT(const std::string & path, const std::string & series, Session & session);
 
+/** The same, read by regions (\ref OpenCT). */
+VolumeSource::Pointer
+OpenChosenCT(const std::string & path, const std::string & series, Session & session);
+
 /** A label map, or a closed surface, and which of its labels is the bone. */
 struct LabelOptions
 {
@@ -37,9 +41,10 @@ struct LabelOptions
 };
 
 /** The bones that the options name, on the CT's grid; `ct` may be null, which a surface does not go with. The session
- * is told where a label map was resampled. Throws UsageError that lists the labels where the bone is not clear. */
+ * is told where a label map was resampled. With `byRegion` a label map on the CT's grid is read as OpenLabelFile has
+ * it. Throws UsageError that lists the labels where the bone is not clear. */
 std::vector<LabelledBone>
-ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session);
+ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session, bool byRegion = false);
 
 /** A label map of one layer on the CT's grid, resampled with a warning where it is not. */
 LabelImage::Pointer
@@ -67,9 +72,9 @@ struct BoneInput
   ContourStack::Pointer contours;
 };
 
-/** `axis` is that of AddAxisOption. */
+/** `axis` is that of AddAxisOption, `byRegion` that of ReadBoneLabels. */
 std::vector<BoneInput>
-ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session);
+ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session, bool byRegion = false);
 
 } // namespace bone
 

@@ -1,15 +1,20 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
+#include "boneBuildPlan.h"
 #include "boneBuildReport.h"
 #include "boneLabelCrop.h"
 #include "boneLabelValue.h"
 #include "boneMeshImageMetrics.h"
 #include "boneResolution.h"
 
+#include <itkImageRegionIteratorWithIndex.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 namespace
 {
@@ -178,6 +183,74 @@ TEST(LabelCrop, BonesAreNotJoinedWithoutBeingToldTo)
   bone::StateOneBone(*labels);
   EXPECT_NO_THROW(bone::VerifyOneBone(labels, 0));
   EXPECT_TRUE(bone::StatesOneBone(*bone::Crop(labels, bone::MeasureLabel(labels, 3).region)));
+}
+
+TEST(LabelCrop, ABoneReadByRegionsIsThatOfTheWholeImages)
+{
+  // Of several slabs, with bones across them and at the border, on an oblique grid.
+  auto labels = bone::LabelImage::New();
+  labels->SetRegions(bone::LabelImage::SizeType{ { 200, 180, 260 } });
+  labels->Allocate(true);
+  auto ct = bone::CTImage::New();
+  ct->SetRegions(labels->GetLargestPossibleRegion());
+  ct->Allocate(true);
+  bone::CTImage::DirectionType direction;
+  const double                 c = std::cos(0.4), s = std::sin(0.4);
+  const double                 rotation[3][3] = { { c, 0, s }, { 0, -1, 0 }, { -s, 0, c } };
+  for (unsigned int i = 0; i < 9; ++i)
+  {
+    direction(i / 3, i % 3) = rotation[i / 3][i % 3];
+  }
+  labels->SetDirection(direction);
+  ct->SetDirection(direction);
+  const auto fill = [&](int label, const bone::CTImage::RegionType & region) {
+    for (itk::ImageRegionIteratorWithIndex<bone::LabelImage> it(labels, region); !it.IsAtEnd(); ++it)
+    {
+      const auto & at = it.GetIndex();
+      it.Set(static_cast<short>((at[0] + at[1] + at[2]) % 5 == 0 ? 0 : label));
+      ct->SetPixel(at, static_cast<float>(at[0] - 3 * at[1] + 7 * at[2]));
+    }
+  };
+  fill(4, { { { 20, 30, 90 } }, { { 40, 50, 60 } } });
+  fill(-9, { { { 190, 0, 250 } }, { { 10, 9, 10 } } });
+  fill(300, { { { 62, 30, 100 } }, { { 20, 20, 20 } } }); // in the margin of another
+  std::string folder = (std::filesystem::temp_directory_path() / "bone-crop-test-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  bone::WriteImage(ct, folder + "/ct.nii");
+  bone::WriteImage(labels, folder + "/labels.nii.gz");
+  const auto                wholeCT = bone::ReadCT(folder + "/ct.nii");
+  const auto                whole = bone::ReadLabelFile(folder + "/labels.nii.gz");
+  const auto                source = bone::OpenCT(folder + "/ct.nii");
+  const auto                opened = bone::OpenLabelFile(folder + "/labels.nii.gz");
+  bone::BuildPlanParameters plan;
+  for (const char * label : { "4", "-9", "300" })
+  {
+    SCOPED_TRACE(label);
+    const auto bone = bone::ChooseBones(opened, { label }).front();
+    plan.label = std::stoi(label);
+    const auto extent = bone::MeasureLabel(whole.layers.front(), plan.label);
+    EXPECT_EQ(bone.region, extent.region);
+    const auto expected = bone::CropToBone(wholeCT, whole.layers.front(), nullptr, plan);
+    const auto input = bone::CropToBone(source->GetOutput(), bone, nullptr, plan);
+    EXPECT_LT(source->GetOutput()->GetBufferedRegion().GetNumberOfPixels(), 1000000u);
+    EXPECT_EQ(input.surface, expected.surface);
+    for (const auto & [a, b] : { std::pair<itk::ImageBase<3> *, itk::ImageBase<3> *>{ input.ct, expected.ct },
+                                 { input.labels, expected.labels },
+                                 { input.mask, expected.mask } })
+    {
+      EXPECT_EQ(a->GetLargestPossibleRegion(), b->GetLargestPossibleRegion());
+      EXPECT_EQ(a->GetOrigin(), b->GetOrigin());
+      EXPECT_EQ(a->GetDirection(), b->GetDirection());
+    }
+    const std::size_t n = input.ct->GetLargestPossibleRegion().GetNumberOfPixels();
+    EXPECT_TRUE(
+      std::equal(input.ct->GetBufferPointer(), input.ct->GetBufferPointer() + n, expected.ct->GetBufferPointer()));
+    EXPECT_TRUE(std::equal(
+      input.labels->GetBufferPointer(), input.labels->GetBufferPointer() + n, expected.labels->GetBufferPointer()));
+    EXPECT_TRUE(std::equal(
+      input.mask->GetBufferPointer(), input.mask->GetBufferPointer() + n, expected.mask->GetBufferPointer()));
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Doubts, TellWhereABuildIsNotWhatWasAskedFor)

@@ -271,10 +271,11 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.request = job.request;
   report.bones = job.bones;
   report.registration = job.registration;
-  report.times.emplace_back("reading", job.secondsOfReading);
   StagingFolder staging(job.folder);
   VerifyFolder(job.folder);
-  const BuildInput input = CropToBone(ct, bone.labels, job.input.contours, plan);
+  Lap              reading;
+  const BuildInput input = CropToBone(ct, bone, job.input.contours, plan);
+  report.times.emplace_back("reading", job.secondsOfReading + reading());
 
   ExpectStages(job, plan, session);
   BuildPipeline pipeline(plan.levels.size() + 1);
@@ -478,7 +479,19 @@ RunBuild(const BuildOptions & given, Session & session)
     { { "reading", 1.0 }, { "register", atlas ? 30.0 : 0.0 } }, 0.0, atlas ? shareOfAtlas : shareOfReading);
   auto                   reading = std::make_unique<Session::Stage>(session, "reading");
   Lap                    lap;
-  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
+  // Contours alone, and an atlas, need all of the CT.
+  const bool            byRegion = !options.bone.labels.file.empty();
+  VolumeSource::Pointer source;
+  CTImage::Pointer      ct;
+  if (byRegion)
+  {
+    source = OpenChosenCT(options.ct, options.series, session);
+    ct = source->GetOutput();
+  }
+  else
+  {
+    ct = ReadChosenCT(options.ct, options.series, session);
+  }
   if (atlas)
   {
     reading.reset();
@@ -487,7 +500,7 @@ RunBuild(const BuildOptions & given, Session & session)
     BuildBone(options, ct, job, session);
     return;
   }
-  auto bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session);
+  auto bones = ReadBones(options.bone, options.parameters.plan.axis, ct, session, byRegion);
   reading.reset();
   const auto jobs = JobsOf(std::move(bones), options.output, lap(), request);
   if (jobs.size() == 1)

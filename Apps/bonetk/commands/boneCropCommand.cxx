@@ -26,11 +26,9 @@ void
 RunCrop(const CropOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, ImageExtensions() }, { options.labelsOutput, ImageExtensions() } });
-  const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
-  const LabelledBone     bone = ReadBoneLabels(options.labels, ct, session).front();
-  BuildPlanParameters    plan = options.plan;
-  plan.label = bone.label;
-  const BuildInput input = CropToBone(ct, bone.labels, nullptr, plan);
+  const VolumeSource::Pointer ct = OpenChosenCT(options.ct, options.series, session);
+  const LabelledBone          bone = ReadBoneLabels(options.labels, ct->GetOutput(), session, true).front();
+  const BuildInput            input = CropToBone(ct->GetOutput(), bone, nullptr, options.plan);
   WriteImage(input.ct, options.output);
   if (!options.labelsOutput.empty())
   {

@@ -64,6 +64,10 @@ ReadLabels(const std::string & path);
 CTImage::Pointer
 ReadRadiograph(const std::string & path);
 
+/** Whether a volume's voxels lie, or may lie, in another file than the one named. */
+bool
+HasDetachedVoxels(const std::string & path);
+
 /** Write the whole file (with its data file, for formats of two) or none; the format is that of the name's extension
  * (.nii.gz, .mha, .nrrd, .png, ...). What was written is read back before it takes its name, since not every format's
  * writer notices a full disk. Label maps are compressed where the format can. */

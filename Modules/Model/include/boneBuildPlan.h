@@ -4,6 +4,7 @@
 #ifndef boneBuildPlan_h
 #define boneBuildPlan_h
 
+#include "boneLabelChoice.h"
 #include "boneResolution.h"
 
 namespace bone
@@ -26,6 +27,11 @@ CropToBone(const CTImage *             ct,
            const LabelImage *          labels,
            const ContourStack *        contours,
            const BuildPlanParameters & plan);
+
+/** The same of a bone of a label map. Where its box is known, CT and labels are read within it and the plan's margin
+ * alone, if they are read by regions (\ref OpenCT, \ref OpenLabelFile). The bone's label is the plan's. */
+BuildInput
+CropToBone(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan);
 
 /** How far the quality stage may move surfaces, mm: half a pixel of the slices, but no more than keeps the overlap with
  * a label map of large voxels. */

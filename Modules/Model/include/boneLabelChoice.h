@@ -17,7 +17,10 @@ struct LabelledBone
 {
   LabelImage::Pointer labels;
   int                 label{ 0 }; ///< its value there; 0: every value but 0
-  std::string         name;       ///< empty where the file has none
+  std::string         name{};     ///< empty where the file has none
+  CTImage::RegionType region{};   ///< smallest box of voxels that holds it; empty where it was not looked for
+  /** Of the labels, where they are read by regions: an image does not keep its source. */
+  itk::ProcessObject::Pointer source{};
 };
 
 /** The labels that a file has, by layer and value, with their names. */

@@ -37,13 +37,15 @@ ResampleToGrid(const LabelImage * labels, const itk::ImageBase<3> * ct);
 /** A value of a label map. */
 struct LabelCount
 {
-  int         value{ 0 };
-  std::size_t voxels{ 0 };
-  double      volume{ 0.0 }; ///< mm^3
-  std::string name;          ///< empty where it has none
+  int                 value{ 0 };
+  std::size_t         voxels{ 0 };
+  double              volume{ 0.0 }; ///< mm^3
+  std::string         name{};        ///< empty where it has none
+  CTImage::RegionType region{};      ///< smallest box of voxels that holds it
 };
 
-/** The values there are but 0, ascending, without names. */
+/** The values there are but 0, ascending, without names. What is read by regions (\ref OpenLabelFile) is read slab by
+ * slab. */
 std::vector<LabelCount>
 CountLabels(const LabelImage * labels);
 

@@ -36,6 +36,20 @@ CropToBone(const CTImage *             ct,
   return input;
 }
 
+BuildInput
+CropToBone(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan)
+{
+  plan.label = bone.label;
+  if (bone.labels.IsNull() || bone.region.GetNumberOfPixels() == 0 || !IsSameGrid(ct, bone.labels))
+  {
+    return CropToBone(ct, bone.labels.GetPointer(), contours, plan);
+  }
+  const CTImage::RegionType region = GrowRegion(ct, bone.region, plan.cropMargin);
+  const CTImage::Pointer    part = Crop(ct, region);
+  const LabelImage::Pointer labels = Crop(bone.labels.GetPointer(), region);
+  return CropToBone(part, labels, contours, plan);
+}
+
 double
 FindDistanceBound(const itk::ImageBase<3> & ct, const BuildPlanParameters & plan)
 {

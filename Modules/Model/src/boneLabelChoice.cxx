@@ -64,7 +64,27 @@ Find(const std::vector<Entry> & entries, const std::string & wanted)
 LabelledBone
 ToBone(const LabelFile & file, const Entry & entry)
 {
-  return { file.layers[entry.layer], entry.count.value, entry.count.name };
+  return { file.layers[entry.layer], entry.count.value, entry.count.name, entry.count.region, file.source };
+}
+
+/** The smallest box that holds all labels. */
+CTImage::RegionType
+BoxOfAll(const std::vector<Entry> & entries)
+{
+  CTImage::IndexType lower = entries.front().count.region.GetIndex();
+  CTImage::IndexType upper = entries.front().count.region.GetUpperIndex();
+  for (const Entry & entry : entries)
+  {
+    for (unsigned int d = 0; d < 3; ++d)
+    {
+      lower[d] = std::min(lower[d], entry.count.region.GetIndex(d));
+      upper[d] = std::max(upper[d], entry.count.region.GetUpperIndex()[d]);
+    }
+  }
+  CTImage::RegionType box;
+  box.SetIndex(lower);
+  box.SetUpperIndex(upper);
+  return box;
 }
 
 LabelledBone
@@ -80,7 +100,7 @@ TheOnlyBone(const LabelFile & file, const std::vector<Entry> & entries)
   }
   if (file.layers.size() == 1 && StatesOneBone(*file.layers.front()))
   {
-    return { file.layers.front(), 0, "" };
+    return { file.layers.front(), 0, "", BoxOfAll(entries), file.source };
   }
   itkGenericExceptionMacro("The label map has several labels, and which of them is the bone was not said; "
                            << List(entries));

@@ -7,6 +7,7 @@
 
 #include <itkImageRegionConstIteratorWithIndex.h>
 #include <itkImageRegionIterator.h>
+#include <itkImageScanlineConstIterator.h>
 #include <itkNearestNeighborInterpolateImageFunction.h>
 #include <itkRegionOfInterestImageFilter.h>
 #include <itkResampleImageFilter.h>
@@ -112,25 +113,89 @@ CopyStatement(const LabelImage * from, LabelImage * to)
     StateOneBone(*to);
   }
 }
+
+/** How often a value occurs, and between which voxels. */
+struct ValueExtent
+{
+  std::size_t        voxels{ 0 };
+  CTImage::IndexType lower{ { 0, 0, 0 } };
+  CTImage::IndexType upper{ { 0, 0, 0 } };
+
+  void
+  Add(const CTImage::IndexType & first, std::size_t run)
+  {
+    CTImage::IndexType last = first;
+    last[0] += static_cast<itk::IndexValueType>(run) - 1;
+    for (unsigned int d = 0; d < 3; ++d)
+    {
+      lower[d] = voxels == 0 ? first[d] : std::min(lower[d], first[d]);
+      upper[d] = voxels == 0 ? last[d] : std::max(upper[d], last[d]);
+    }
+    voxels += run;
+  }
+};
+
+constexpr int LabelOffset = 32768;
+
+/** Counts the runs of one value in the rows of a region that is buffered. */
+void
+CountRuns(const LabelImage * labels, const CTImage::RegionType & region, std::vector<ValueExtent> & extents)
+{
+  const auto length = static_cast<std::size_t>(region.GetSize(0));
+  for (itk::ImageScanlineConstIterator<LabelImage> it(labels, region); !it.IsAtEnd(); it.NextLine())
+  {
+    const CTImage::IndexType start = it.GetIndex();
+    const short *            row = labels->GetBufferPointer() + labels->ComputeOffset(start);
+    for (std::size_t x = 0; x < length;)
+    {
+      std::size_t end = x + 1;
+      for (; end < length && row[end] == row[x]; ++end)
+      {}
+      if (row[x] != 0)
+      {
+        CTImage::IndexType first = start;
+        first[0] += static_cast<itk::IndexValueType>(x);
+        extents[static_cast<std::size_t>(row[x] + LabelOffset)].Add(first, end - x);
+      }
+      x = end;
+    }
+  }
+}
 } // namespace
 
 std::vector<LabelCount>
 CountLabels(const LabelImage * labels)
 {
-  constexpr int            offset = 32768;
-  std::vector<std::size_t> counts(2 * offset, 0);
-  for (itk::ImageRegionConstIterator<LabelImage> it(labels, labels->GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  constexpr std::size_t    slabVoxels = std::size_t{ 1 } << 22;
+  std::vector<ValueExtent> extents(2 * LabelOffset);
+  const auto               whole = labels->GetLargestPossibleRegion();
+  const std::size_t        slice = std::max<std::size_t>(1, whole.GetSize(0) * whole.GetSize(1));
+  const std::size_t        thickness = std::max<std::size_t>(1, slabVoxels / slice);
+  for (std::size_t z = 0; z < whole.GetSize(2); z += thickness)
   {
-    ++counts[static_cast<std::size_t>(it.Get() + offset)];
+    CTImage::RegionType slab = whole;
+    slab.SetIndex(2, whole.GetIndex(2) + static_cast<itk::IndexValueType>(z));
+    slab.SetSize(2, std::min<itk::SizeValueType>(thickness, whole.GetSize(2) - z));
+    if (labels->GetSource())
+    {
+      auto * image = const_cast<LabelImage *>(labels);
+      image->SetRequestedRegion(slab);
+      image->Update();
+    }
+    CountRuns(labels, slab, extents);
   }
   const auto              spacing = labels->GetSpacing();
   std::vector<LabelCount> result;
-  for (int value = -offset; value < offset; ++value)
+  for (int value = -LabelOffset; value < LabelOffset; ++value)
   {
-    const std::size_t voxels = counts[static_cast<std::size_t>(value + offset)];
-    if (value != 0 && voxels > 0)
+    const ValueExtent & extent = extents[static_cast<std::size_t>(value + LabelOffset)];
+    if (extent.voxels > 0)
     {
-      result.push_back({ value, voxels, static_cast<double>(voxels) * spacing[0] * spacing[1] * spacing[2], "" });
+      LabelCount count{ value, extent.voxels };
+      count.volume = static_cast<double>(extent.voxels) * spacing[0] * spacing[1] * spacing[2];
+      count.region.SetIndex(extent.lower);
+      count.region.SetUpperIndex(extent.upper);
+      result.push_back(count);
     }
   }
   return result;

@@ -167,7 +167,7 @@ Write(const TImage * image, const std::string & path, bool compress)
   }
   catch (const itk::ExceptionObject & error)
   {
-    throw IOError(path, "cannot write: " + ErrorLine(error));
+    throw MachineError(path, "cannot write: " + ErrorLine(error));
   }
   file.Commit();
 }
