@@ -14,6 +14,8 @@ import pathlib
 import subprocess
 import tempfile
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "atlas.md"
 
@@ -165,7 +167,7 @@ def main():
         validation.population()
     if options.only in (None, "memory"):
         validation.memory()
-    out = ["# Atlas\n", "Written by `Testing/Validation/atlas.py`.\n"]
+    out = ["# Atlas\n", made_by(__file__) + ".\n"]
     out += registration_section(scratch) + population_section(scratch) + memory_section(scratch)
     REPORT.write_text("\n".join(out) + "\n")
     print("\n".join(out))

@@ -26,6 +26,8 @@ from deformable import ROOT, prepare, run  # noqa: E402
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
+from report import made_by
+
 DATA = pathlib.Path(os.environ["BONETK_DATA"])
 BONETK = os.environ["BONETK"]
 PAGE = ROOT / "Documentation/validation/atlas_on_ct.md"
@@ -157,7 +159,6 @@ def main():
         work = pathlib.Path(temporary)
         folder = pathlib.Path(os.environ.get("FEMORA") or work)
         registered = prepare(folder, shapes)
-        commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
         table, worst, save, ends = simulated(folder, registered, DATA / "femur_shapes", work)
         draw(save, worst["subject"], PAGE.with_name("atlas_on_ct_worst.png"))
         atlas = work / "femur.h5"
@@ -173,7 +174,7 @@ def main():
             print(refusals.splitlines()[-1], flush=True)
     PAGE.write_text(f"""# The atlas on CTs without a label map
 
-Made by `Testing/Validation/atlas_on_ct.py` at {commit}.
+{made_by(__file__)}.
 
 ## Simulated CTs
 

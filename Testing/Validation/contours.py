@@ -12,6 +12,8 @@ import statistics
 import subprocess
 import sys
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "contours.md"
 SUBJECTS = range(1, 11)
@@ -125,7 +127,7 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     program = pathlib.Path(sys.argv[1]) / "Testing" / "Validation" / "boneContourValidation"
-    out = ["# Contours\n", "Written by `Testing/Validation/contours.py`.\n"]
+    out = ["# Contours\n", made_by(__file__) + ".\n"]
     phantoms(program, out)
     if "BONETK_DATA" in os.environ:
         real_femur(program, os.environ["BONETK_DATA"], out)

@@ -24,6 +24,8 @@ from scipy.spatial import cKDTree
 from vtk import vtkXMLPolyDataReader
 from vtk.util.numpy_support import vtk_to_numpy
 
+from report import made_by
+
 ROOT = Path(__file__).resolve().parents[2]
 BONETK = os.environ["BONETK"]
 DATA = Path(os.environ["BONETK_DATA"])
@@ -306,7 +308,7 @@ def passes(tally):
 
 HEADER = """# Contours of real bones are valid
 
-`Testing/Validation/contours_valid.py`: contours by `bonetk contours --keep-small` with the label map, resampled and with medial axes as
+{made_by}: contours by `bonetk contours --keep-small` with the label map, resampled and with medial axes as
 written, read and tested by a program of its own on every slice. Contours by layer (0 periosteal, 1 endosteal, 2 medullary) and
 holes; *crossings* of contours with themselves or one another; *not nested*: a contour in the wrong layer's; *distance*: the
 least between a contour and the next inside it (asked for: {distance} mm); *axes*: of the innermost contours, how many have one,
@@ -362,7 +364,7 @@ def main():
                 print(rows[-1], flush=True)
         outlines, close = outline_rows(folder)
     path = ROOT / "Documentation" / "validation" / "contours_valid.md"
-    path.write_text(HEADER.format(distance=LAYER_DISTANCE, smallest=f"{SMALLEST:g}") + "\n".join(rows + [OUTLINE.format(limit=LIMIT)]) + "\n".join(outlines) + "\n")
+    path.write_text(HEADER.format(made_by=made_by(__file__), distance=LAYER_DISTANCE, smallest=f"{SMALLEST:g}") + "\n".join(rows + [OUTLINE.format(limit=LIMIT)]) + "\n".join(outlines) + "\n")
     return 0 if good and close else 1
 
 

@@ -18,6 +18,8 @@ import subprocess
 import sys
 import tempfile
 
+from report import made_by
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ONE = ("--angles", 0, "--prior-translation", 5.8, "--prior-rotation", 5.8)
 CASES = (("two views", ("--scatter", 0)),
@@ -75,7 +77,6 @@ def main():
     registered = prepare(folder, shapes)
     found = shapes[:int(os.environ.get("SUBJECTS", len(shapes)))]
     only = ("--only", *(shape.stem for shape in found))
-    commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
     nearness, regions = "", ""
     for name, options in CASES:
         lines = run(os.environ["BONETK_VALIDATION"], registered, folder, data, *options, *only).splitlines()
@@ -96,7 +97,7 @@ def main():
         print(nearness.splitlines()[-1], flush=True)
     text = f"""# Shape and density from X-rays
 
-Made by `Testing/Validation/deformable.py` at {commit}.
+{made_by(__file__)}.
 
 Leave-one-out, {len(found)} of {len(shapes)} femora: surfaces of real bones, in which cortex and densities vary from bone to bone
 (`bonetk phantom --surface --subject`). Each is found by the atlas of the others in X-rays simulated from its CT of 1 mm voxels: the

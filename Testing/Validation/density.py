@@ -21,6 +21,8 @@ import tempfile
 import nibabel
 import numpy
 
+from report import made_by
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUT = ROOT / "Documentation" / "validation"
 DEGREES = range(9)
@@ -280,7 +282,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         parts = [hip(bonetk, data, work), phantom(bonetk, work), speed()]
-    (OUT / "density.md").write_text("# Density fit\n\nWritten by `Testing/Validation/density.py`.\n\n" + "\n".join(parts))
+    (OUT / "density.md").write_text(f"# Density fit\n\n{made_by(__file__)}.\n\n" + "\n".join(parts))
 
 
 if __name__ == "__main__":

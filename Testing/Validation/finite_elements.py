@@ -22,6 +22,7 @@ sys.path.insert(0, str(ROOT / "Testing" / "Integration"))
 os.environ.setdefault("BONETK", "")
 import calculix  # noqa: E402
 from simplification import bones  # noqa: E402
+from report import made_by
 
 BONETK = os.environ["BONETK"]
 PAGES = ROOT / "Documentation" / "validation"
@@ -221,7 +222,6 @@ def strain_picture(model, folder):
 def main():
     data = os.environ.get("BONETK_DATA")
     chosen = {bone.name: bone for bone in bones(data)[:10]}
-    commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         kept = pathlib.Path(os.environ.get("MODELS", made))
@@ -230,12 +230,12 @@ def main():
         some = {name: models[name] for name in ("phantom femur 0", "clinical femur", "tibia") if name in models}
         parts = {"levels": levels_part(some, folder), "bins": bins_part(femur, folder), "files": files_part(models, folder)}
         strain_picture(femur, folder)
-    (PAGES / "finite_elements.md").write_text(PAGE.format(commit=commit, **parts))
+    (PAGES / "finite_elements.md").write_text(PAGE.format(made_by=made_by(__file__), **parts))
 
 
 PAGE = """# Finite elements
 
-Made by `Testing/Validation/finite_elements.py` at commit {commit}. Models are those of `bonetk build`, exported by
+{made_by}. Models are those of `bonetk build`, exported by
 `bonetk export --law keyak1998 --line 0.02 0.0008` (an example of a calibration, not that of these scanners) and solved by
 CalculiX (SPOOLES). Closed forms (bar, bar of changing modulus, cantilever, ball under pressure) are in
 `Testing/Integration/export_test.py`.

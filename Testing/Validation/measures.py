@@ -21,6 +21,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from deformable import ROOT, prepare, run
+from report import made_by
 
 BONETK = os.environ["BONETK"]
 # Seeds on the last femur, whose space is that of the data: x up, y medial, z backward, mm.
@@ -293,7 +294,6 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         registered = prepare(pathlib.Path(os.environ.get("FEMORA") or tempfile.mkdtemp()), shapes)
-        commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
         carried = landmarks(folder, shapes, registered)
         print(carried, flush=True)
         beside = femora(folder, shapes, registered)
@@ -306,7 +306,7 @@ def main():
         print(built, flush=True)
     text = f"""# Landmarks and measures
 
-Made by `Testing/Validation/measures.py` at {commit}.
+{made_by(__file__)}.
 
 {len(shapes)} femora, surfaces of real bones with one triangulation (vertex k of one is vertex k of all), and models of them on one topology of
 some 9,000 tetrahedra, registered to CTs that were simulated from the surfaces (`bonetk train --registered`).

@@ -3,11 +3,17 @@
 # the documentation's example programs. As root, on Debian, with mmdebstrap and a mirror that apt reaches.
 #
 #   Testing/Validation/packages.sh [BUILD-TREE]     default: that of the preset package, which is built
+#   Testing/Validation/packages.sh --again          builds in another folder too, and compares the packages byte by byte: some
+#                                                   half an hour more
 #
-# What it measures goes to standard output, all else to standard error.
+# Writes Documentation/validation/packages.md, and all else to standard error.
 set -euo pipefail
 project=$(cd "$(dirname "$0")/../.." && pwd)
-say() { printf '%-64s %s\n' "$1" "$2"; }
+rows=""
+say() {
+  rows+="| $1 | $2 |"$'\n'
+  echo "$1: $2" >&2
+}
 fail() {
   echo "$0: $1" >&2
   exit 1
@@ -15,6 +21,15 @@ fail() {
 [ "$(id -u)" -eq 0 ] || fail "a root of its own can only be made as root"
 command -v mmdebstrap > /dev/null || fail "mmdebstrap is needed: apt-get install mmdebstrap"
 
+made_by=$(/usr/bin/python3 "$project/Testing/Validation/report.py" "$0")
+again=no
+if [ "${1:-}" = --again ]; then
+  again=yes
+  shift
+  git -C "$project" diff --quiet HEAD || fail "the sources differ from their commit, of which the other folder is made"
+  # Each object is compiled, twice.
+  export CCACHE_DISABLE=1
+fi
 if [ $# -eq 0 ]; then
   (cd "$project" && cmake --preset package && cmake --build --preset package) >&2
   build=$project/build/package
@@ -35,8 +50,18 @@ for run in first second; do
 done
 for package in "$work"/first/*.deb; do
   cmp "$package" "$work/second/$(basename "$package")" || fail "a second run of cpack writes other bytes"
-  say "$(basename "$package"), the same twice" "$(($(stat -c %s "$package") / 1000)) kB"
+  say "$(basename "$package"); a second run of cpack writes the same bytes" "$(($(stat -c %s "$package") / 1000)) kB"
 done
+if [ $again = yes ]; then
+  other=$work/another/folder
+  git clone -q "$project" "$other" >&2
+  (cd "$other" && cmake --preset package && cmake --build --preset package && cd build/package && cpack -B "$work/third") >&2
+  for package in "$work"/first/*.deb; do
+    cmp "$package" "$work/third/$(basename "$package")" || fail "in another folder $(basename "$package") has other bytes"
+  done
+  rm -rf "$other"
+  say "all packages, compiled again in another folder" "the same bytes"
+fi
 
 # A root with apt alone, and what the packages ask for.
 begin=$SECONDS
@@ -50,7 +75,7 @@ within apt-get update -q >&2
 add "/tmp/bonetk_*.deb"
 say "a clean root with bonetk" "$((SECONDS - begin)) s, $(du -smx "$work/root" | cut -f 1) MB"
 
-within bonetk --version
+within bonetk --version >&2
 cat > "$work/root/tmp/phantom.sh" << 'END'
 set -eu
 mkdir /tmp/try && cd /tmp/try
@@ -94,4 +119,14 @@ within sh -c "cp -r /usr/share/doc/bonetk-doc/Examples /tmp/examples && cd /tmp/
   cmake -G Ninja -S . -B build && cmake --build build && cd /tmp/try && /tmp/examples/build/bonePhantomExample e.mha l.mha" >&2
 say "all example programs built with libbonetk-dev" "$((SECONDS - begin)) s"
 say "the root with all packages" "$(du -smx "$work/root" | cut -f 1) MB"
+cat > "$project/Documentation/validation/packages.md" << END
+# Packages
+
+$made_by: the Debian packages, and a clean root of Debian $(. /etc/os-release && echo "$VERSION_ID") (\`mmdebstrap --variant=apt\`) into which apt
+installs them. The limit for the phantom and for the README's first command is 60 s.
+
+| | |
+|---|---|
+$rows
+END
 [ -z "$late" ] || fail "$late took more than 60 s"

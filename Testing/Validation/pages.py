@@ -9,7 +9,6 @@ first frame's median is above 3 s or the hip's page above 3 MB. Needs node and w
 """
 import os
 import pathlib
-import platform
 import shutil
 import statistics
 import subprocess
@@ -26,6 +25,7 @@ os.environ.setdefault("BONETK_CHROMIUM", shutil.which("chromium-headless-shell")
 sys.path += [str(ROOT / "Testing" / "Page"), str(ROOT / "Testing" / "Validation")]
 from bonetk_test import PLANES, cut_differences, look, must, read_grid  # noqa: E402
 from simplification import HIP, bones  # noqa: E402
+from report import made_by
 
 REPORT = ROOT / "Documentation" / "validation" / "pages.md"
 NAMES = (HIP, "phantom femur 0", "phantom hemipelvis 0")
@@ -79,27 +79,20 @@ def measure(bone, folder):
     return row, failed
 
 
-def machine():
-    """Processor and its number of threads."""
-    models = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
-    return f"{models[0] if models else platform.machine()}, {os.cpu_count()} processors"
-
-
 def main():
     chosen = [bone for bone in bones(os.environ.get("BONETK_DATA")) if bone.name in NAMES]
     with tempfile.TemporaryDirectory() as folder:
         measured = [measure(bone, pathlib.Path(folder)) for bone in chosen]
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     head = ["bone", "tetrahedra of level 1", "page, MB", "first frame, s", "least to most", "cut, ms", "cut to density, HU, mean",
             "99 % below"]
     failed = [text for _, texts in measured for text in texts]
-    REPORT.write_text(PAGE.format(commit=commit, machine=machine(), table=table(head, [row for row, _ in measured])))
+    REPORT.write_text(PAGE.format(made_by=made_by(__file__), table=table(head, [row for row, _ in measured])))
     sys.exit("\n".join(failed) or 0)
 
 
 PAGE = """# Pages
 
-Made by `Testing/Validation/pages.py` at commit {commit} on {machine}, Chromium drawing without a graphics card, other work going
+{made_by}, Chromium drawing without a graphics card, other work going
 on. Pages are those of `bonetk build` with its defaults: three levels, all contours, CT slices, pictures and charts.
 
 {table}

@@ -22,6 +22,8 @@ import vtk
 from scipy import ndimage
 from vtk.util.numpy_support import vtk_to_numpy
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "quality.md"
 
@@ -191,7 +193,7 @@ def angles(row):
 
 
 def report(rows, methods):
-    out = ["# Mesh quality\n", "Written by `Testing/Validation/quality.py`: bones tiled as `bonetk build` does by default, then the quality",
+    out = ["# Mesh quality\n", f"{made_by(__file__)}: bones tiled as `bonetk build` does by default, then the quality",
            "stage with its defaults (distance bound: half a pixel, at most 0.3 mm; fitted to the contours of all slices and the label).\n", "## Angles\n",
            "Smallest dihedral angle, degrees: cortical: least; % of cells below 2; mean, and what thickness over edge allows on",
            "average (mean of the three cells of a prism of that height). Other regions: least; % of cells below 8; mean.\n",

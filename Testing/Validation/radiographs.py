@@ -22,6 +22,8 @@ import tempfile
 import nibabel
 import numpy
 
+from report import made_by
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TARGETS = (1.5, 3.0, 5.0)
 PAPER = (3.2, 7.6, 14.4)
@@ -187,7 +189,7 @@ def main():
         geometry, arguments = frame(labels, label)
         rows, truth = table_4(bonetk, model, work, ct, labels, label, geometry)
         lines = ["# Radiographs", "",
-                 "Made by `Testing/Validation/radiographs.py`.", "",
+                 made_by(__file__) + ".", "",
                  f"## The paper's Table 4: {name}, label {label} of `{sys.argv[2]}`", "",
                  "512 x 512 pixels from the front, source 1000 mm before the bone's centre, detector at 1200 mm, degree 3, "
                  "against the radiograph of the CT masked by the label (Joseph's method), over the pixels that either "

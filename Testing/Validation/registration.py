@@ -22,6 +22,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+from report import made_by
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ROOT / "Documentation/validation"
 HIP = ("hip bone, clinical CT", "hip_ct/hip", 2)
@@ -157,10 +159,9 @@ def main():
     PAGES.mkdir(exist_ok=True)
     runs = Runs(pathlib.Path(os.environ.get("MODELS") or tempfile.mkdtemp()),
                 float(sys.argv[1]) if len(sys.argv) > 1 else 1.0)
-    commit = run("git", "-C", ROOT, "rev-parse", "--short", "HEAD").strip()
     text = f"""# Rigid registration to X-rays
 
-Made by `Testing/Validation/registration.py` at {commit}.
+{made_by(__file__)}.
 
 Each model, built by `bonetk build` with its defaults, is registered to X-rays of 256 x 256 pixels simulated from the whole CT:
 attenuation of soft tissue and bone, all that the CT holds beside the bone, scatter (scatter-to-primary 0.6, blurred by 30 mm),

@@ -21,6 +21,8 @@ import time
 
 import numpy
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "simplification.md"
 COUNTS = (6138, 2438)
@@ -398,8 +400,7 @@ def main():
                  "storage": lambda: storage_part(validation, first), "vtk": lambda: vtk_part(validation, first),
                  "property": lambda: property_part(validation), "time": lambda: time_part(validation, first)}
         out = [make() for name, make in parts.items() if options.part in ("", name)]
-    commit = run("git", "-C", HERE.parent, "rev-parse", "--short", "HEAD").strip()
-    text = "\n".join(["# Simplification\n", f"Made by `Testing/Validation/simplification.py` at commit {commit}.\n", *out])
+    text = "\n".join(["# Simplification\n", made_by(__file__) + ".\n", *out])
     if options.only or options.part:
         print(text)
     else:

@@ -21,12 +21,14 @@ import sys
 import tempfile
 import threading
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "tiling.md"
 SPACINGS = (4, 2, 8)
 INTRODUCTION = """# Tiling
 
-Written by `Testing/Validation/tiling.py`. Contours from label maps, tiled without CT; no smoothing.
+{made_by}. Contours from label maps, tiled without CT; no smoothing.
 
 - Components, handles and voids: of all regions from the first, second, third inward. In brackets those of the stack where
   they differ, each slice thickened to the middle of its neighbours, so that slices are joined in every place where they
@@ -179,7 +181,7 @@ def main():
     validation = Validation(options.build, options.check)
     chosen = [c for c in cases(os.environ.get("BONETK_DATA")) if options.only in c[0]][::options.sample]
     checker = "an independent checker, inner layers included" if options.check else "`bonetk validate`"
-    out = [INTRODUCTION.format(checker=checker), "| bone, slice step | spacing, mm | valid | components/handles/voids | other slabs | tetrahedra | groups | filled | "
+    out = [INTRODUCTION.format(made_by=made_by(__file__), checker=checker), "| bone, slice step | spacing, mm | valid | components/handles/voids | other slabs | tetrahedra | groups | filled | "
            "left out | parted | against the label | mean least angle | s |", "|" + "---|" * 13]
     invalid, differing, lines = 0, 0, []
     done = {"|".join(line.split("|")[:3]): line for line in options.resume.read_text().splitlines()

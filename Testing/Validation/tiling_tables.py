@@ -19,6 +19,8 @@ import time
 import nibabel
 import numpy
 
+from report import made_by
+
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "tiling_tables.md"
 BONES = (("femur", "hip_ct/hip_ct.nii.gz", "hip_ct/hip_labels.nii.gz", 1),
@@ -29,7 +31,7 @@ SIZES = (5_000, 15_000, 33_000, 100_000, 250_000, 500_000)
 REFERENCE = (3.1, 33_000)  # mean slice distance (mm) of a hip bone, tetrahedra
 INTRODUCTION = """# Tiling: tables
 
-Written by `Testing/Validation/tiling_tables.py`. Meshes as tiled, before any smoothing."""
+{made_by}. Meshes as tiled, before any smoothing."""
 
 
 class Tables:
@@ -39,7 +41,7 @@ class Tables:
         self.check = check
         self.folder = pathlib.Path(folder)
         self.data = pathlib.Path(os.environ["BONETK_DATA"])
-        self.out = [INTRODUCTION]
+        self.out = [INTRODUCTION.format(made_by=made_by(__file__))]
 
     def run(self, *command):
         return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=True).stdout

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Reports of validation: each says its script, commit and machine, is in the list of reports, and is made by run.sh."""
+import os
+import pathlib
+import re
+import shutil
+
+from bonetk_testing import TestCase, main, run
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPTS = ROOT / "Testing/Validation"
+PAGES = ROOT / "Documentation/validation"
+MADE_BY = r"Made by `Testing/Validation/([a-z_]+\.(?:py|sh))` at commit [0-9a-f]{7,12}( with changes)? on \S.*\S"
+
+
+def faults(pages, scripts):
+    """What is amiss, a line each."""
+    listed = dict(line.split("\t") for line in run(scripts / "run.sh", "--list")[1].splitlines())
+    for name in sorted(listed):
+        if not (pages / f"{name}.md").exists():
+            yield f"{name} is listed, and there is no page"
+    for page in sorted(pages.glob("*.md")):
+        if page.name == "README.md":
+            continue
+        made = re.match(MADE_BY, (page.read_text().split("\n") + ["", ""])[2])
+        if not made:
+            yield f"{page.name}: its third line does not say script, commit and machine as report.py does"
+        elif made[1] not in listed.get(page.stem, "").split():
+            yield f"{page.name}: README.md lists no command of {made[1]} for it"
+        elif not re.search(r"made_by\(__file__\)|report\.py", (scripts / made[1]).read_text()):
+            yield f"{made[1]} writes no line of report.py"
+
+
+class Reports(TestCase):
+    def copy(self):
+        """The pages and scripts, to be changed."""
+        shutil.copytree(PAGES, "Documentation/validation")
+        os.makedirs("Testing")
+        shutil.copytree(SCRIPTS, "Testing/Validation", ignore=shutil.ignore_patterns("*.cxx", "*.h"))
+        return pathlib.Path("Documentation/validation"), pathlib.Path("Testing/Validation").absolute()
+
+    def test_reports(self):
+        self.assertEqual(list(faults(PAGES, SCRIPTS)), [])
+
+    def test_line_of_a_report(self):
+        code, out, err = run(SCRIPTS / "report.py", "some_script.sh")
+        if (ROOT / ".git").exists():
+            self.assertEqual((code, err), (0, ""))
+            self.assertRegex(out, MADE_BY + r"\n$")
+
+    def test_what_is_missing_is_seen(self):
+        pages, scripts = self.copy()
+        self.assertEqual(list(faults(pages, scripts)), [])
+        text = (pages / "quality.md").read_text()
+        (pages / "quality.md").write_text(re.sub(" at commit [0-9a-f]*", "", text))
+        (pages / "other.md").write_text(text)
+        (pages / "atlas.md").unlink()
+        (scripts / "tiling.py").write_text("")
+        self.assertEqual([fault.split(":")[0] for fault in faults(pages, scripts)],
+                         ["atlas is listed, and there is no page", "other.md", "quality.md", "tiling.py writes no line of report.py"])
+
+    def test_all_by_one_command(self):
+        pages, scripts = self.copy()
+        (pages / "README.md").write_text("| page | command |\n|---|---|\n| [one](one.md) | `one.sh $build` | 1 min |\n"
+                                         "| [two](two.md) | `NUMBER=2 two.sh \"a b\"` | 2 h |\n")
+        (scripts / "one.sh").write_text('#!/bin/sh\necho "one $1" >> "$OUT"; exit 3\n')
+        (scripts / "two.sh").write_text('#!/bin/sh\necho "two $NUMBER $1" >> "$OUT"\n')
+        for name in ("one.sh", "two.sh"):
+            (scripts / name).chmod(0o755)
+        os.mkdir("build")
+        environment = dict(os.environ, BONETK_DATA=".", BONETK_BUILD="build", OUT=os.path.abspath("out"))
+        code, _, err = run(scripts / "run.sh", env=environment)
+        self.assertEqual((code, err.splitlines()), (1, [f"{scripts}/run.sh: failed: one"]))
+        self.assertEqual(pathlib.Path("out").read_text(), f"one {os.path.realpath('build')}\ntwo 2 a b\n")
+        self.assertEqual(run(scripts / "run.sh", "two", env=environment)[0], 0)
+        code, _, err = run(scripts / "run.sh", "three", env=environment)
+        self.assertEqual(code, 2)
+        self.assertIn("there is no report three", err)
+
+
+if __name__ == "__main__":
+    main()
