@@ -5,6 +5,7 @@
 
 #include "boneBuildInformation.h"
 #include "boneFileName.h"
+#include "boneIOError.h"
 #include "boneImageIO.h"
 #include "boneProvenance.h"
 
@@ -92,22 +93,29 @@ DescribeRequest(const std::vector<std::pair<std::string, std::string>> & inputs,
     return {};
   }
   nlohmann::json request{ { "program", DescribeVersion() }, { "options", std::move(options) } };
-  for (const auto & [role, path] : inputs)
+  try
   {
-    if (path.empty())
+    for (const auto & [role, path] : inputs)
     {
-      continue;
+      if (path.empty())
+      {
+        continue;
+      }
+      if (std::error_code error; !fs::is_directory(path, error))
+      {
+        RequireReadableFile(path); // no pipe
+      }
+      if (HasDetachedVoxels(path))
+      {
+        return {};
+      }
+      const InputFile file = DescribeInput(path);
+      request["inputs"][role] = { { "bytes", file.bytes }, { "md5", file.md5 } };
     }
-    if (!fs::is_directory(path))
-    {
-      RequireReadableFile(path); // no pipe
-    }
-    if (HasDetachedVoxels(path))
-    {
-      return {};
-    }
-    const InputFile file = DescribeInput(path);
-    request["inputs"][role] = { { "bytes", file.bytes }, { "md5", file.md5 } };
+  }
+  catch (const IOError &)
+  {
+    return {}; // who needs the file says what is wrong with it
   }
   return request;
 }
