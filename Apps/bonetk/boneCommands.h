@@ -53,6 +53,9 @@ void
 AddRegisterDeformCommand(CLI::App & group, Action & action);
 /** To the group `register`. */
 void
+AddRegisterSubjectCommand(CLI::App & group, Action & action);
+/** To the group `register`. */
+void
 AddRegisterVolumeCommand(CLI::App & group, Action & action);
 void
 AddLabelCommand(CLI::App & app, Action & action);

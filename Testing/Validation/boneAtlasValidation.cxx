@@ -6,7 +6,8 @@
 //   boneAtlasValidation registration STANDARD.vtu REFERENCE.ply SUBJECT.ply...   correspondence is known
 //   boneAtlasValidation frames|icp ...                                           the same with the alternatives
 //   boneAtlasValidation population STANDARD.vtu SUBJECTS VOXEL                   scans of phantoms with known factors
-//   boneAtlasValidation memory MESH.vtu SUBJECTS                                 large training sets
+//   boneAtlasValidation samples ATLAS.h5 FOLDER FIRST COUNT NOISE                random subjects of an atlas
+//   boneAtlasValidation compare ATLAS.h5 ATLAS.h5 MODES                          the first modes of two atlases
 
 #include "boneAtlasRegistration.h"
 #include "boneDirectedSurface.h"
@@ -14,6 +15,7 @@
 #include "boneHemipelvisPhantom.h"
 #include "boneMeshIO.h"
 #include "boneModelEvaluation.h"
+#include "boneModelIO.h"
 #include "bonePhantomImageSource.h"
 #include "bonePopulation.h"
 #include "boneStatisticalModelEstimator.h"
@@ -21,14 +23,16 @@
 #include <itkMultiThreaderBase.h>
 
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <nlohmann/json.hpp>
 
 #include <array>
 #include <ctime>
-#include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <numeric>
 #include <random>
+#include <sstream>
 
 namespace
 {
@@ -358,93 +362,63 @@ Population(const std::string & standard, Eigen::Index subjects, double voxel)
   }
 }
 
-/** Subjects made when they are asked for: a mesh with ten modes of shape and of density, and noise. */
-class SyntheticSet : public TrainingSet
+/** Random bones of an atlas, with noise in every coefficient that is their own: 00001.vtu, ... */
+void
+Samples(const std::string & atlas, const std::string & folder, unsigned first, unsigned count, double noise)
 {
-public:
-  using Self = SyntheticSet;
-  using Pointer = itk::SmartPointer<Self>;
-  itkNewMacro(Self);
-  std::size_t
-  GetNumberOfSubjects() const override
+  const auto   model = ReadStatisticalModel(atlas);
+  const auto & content = model->GetContent();
+  for (unsigned i = first; i < first + count; ++i)
   {
-    return count;
-  }
-  std::string
-  GetSubjectName(std::size_t i) const override
-  {
-    return std::to_string(i);
-  }
-  MeshArrays
-  GetSubject(std::size_t i) const override
-  {
-    std::mt19937                     generator(static_cast<unsigned>(i + 1));
-    std::normal_distribution<double> normal;
-    MeshArrays                       mesh = base;
-    Eigen::VectorXd                  f(20);
-    for (double & x : f)
+    MeshArrays   mesh = model->Synthesize(SampleCoefficients(content.shape.GetNumberOfModes(), 2 * i),
+                                        SampleCoefficients(content.density.GetNumberOfModes(), 2 * i + 1));
+    std::mt19937 generator(i);
+    std::normal_distribution<double> normal(0.0, noise);
+    for (double & c : mesh.coefficients)
     {
-      x = normal(generator);
+      c += normal(generator);
     }
-    std::uint32_t noise = static_cast<std::uint32_t>(i) * 2654435761U + 1;
-    for (Vector3 & x : mesh.points)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        noise = noise * 1664525U + 1013904223U;
-        x[a] += 0.1 * (noise / 4294967296.0 - 0.5);
-      }
-      const double t = 0.01 * x[0];
-      x[1] += f[0] * std::sin(t) + f[1] * std::cos(t) + f[2] * std::sin(2 * t);
-      x[2] += f[3] * std::sin(t) + f[4] * std::cos(3 * t);
-    }
-    for (std::size_t k = 0; k < mesh.coefficients.size(); ++k)
-    {
-      noise = noise * 1664525U + 1013904223U;
-      const double t = static_cast<double>(k) / static_cast<double>(mesh.coefficients.size());
-      mesh.coefficients[k] +=
-        50 * f[5] + 40 * f[6] * std::sin(6 * t) + 30 * f[7] * std::cos(9 * t) + 20 * (noise / 4294967296.0 - 0.5);
-    }
-    return mesh;
+    std::ostringstream name;
+    name << folder << '/' << std::setw(5) << std::setfill('0') << i << ".vtu";
+    WriteMeshArrays(mesh, name.str());
   }
-  MeshArrays  base;
-  std::size_t count{ 0 };
-};
+}
 
-double
-PeakGigabytes()
+/** The first modes of two atlases: variances as shares of the first's, and the largest angle between their spans. */
+json
+CompareModes(const PrincipalModes & a, const PrincipalModes & b, Eigen::Index count)
 {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
+  const Eigen::Index k = std::min({ count, a.GetNumberOfModes(), b.GetNumberOfModes() });
+  Eigen::MatrixXd    cross(k, k);
+  double             variance = 0;
+  for (Eigen::Index i = 0; i < k; ++i)
   {
-    if (word == "VmHWM:")
-    {
-      double kilobytes = 0;
-      status >> kilobytes;
-      return kilobytes / (1024 * 1024);
-    }
+    cross.col(i) = a.modes.leftCols(k).transpose() * b.Dual(b.modes.col(i));
+    variance = std::max(variance, std::abs(b.variances[i] / a.variances[i] - 1));
   }
-  return 0;
+  const double cosine = cross.jacobiSvd().singularValues().minCoeff();
+  return { { "modes", { a.GetNumberOfModes(), b.GetNumberOfModes() } },
+           { "compared", k },
+           { "variance", variance },
+           { "total", std::abs(b.totalVariance / a.totalVariance - 1) },
+           { "explained", { a.variances.sum() / a.totalVariance, b.variances.sum() / b.totalVariance } },
+           { "degrees", std::acos(std::min(1.0, cosine)) * 180 / std::acos(-1.0) } };
 }
 
 void
-Memory(const std::string & file, std::size_t subjects)
+Compare(const std::string & first, const std::string & second, Eigen::Index count)
 {
-  auto set = SyntheticSet::New();
-  set->base = ReadMeshArrays(file);
-  set->count = subjects;
-  auto estimator = StatisticalModelEstimator<>::New();
-  estimator->SetInput(set);
-  const double start = Cpu();
-  estimator->Update();
-  const auto & content = estimator->GetOutput()->GetContent();
-  std::cout << json{ { "subjects", subjects },
-                     { "tetrahedra", content.mean.tetrahedra.size() },
-                     { "coefficients", content.density.GetDimension() },
-                     { "shapeModes", content.shape.GetNumberOfModes() },
-                     { "densityModes", content.density.GetNumberOfModes() },
-                     { "seconds", Cpu() - start },
-                     { "gigabytes", PeakGigabytes() } }
+  const auto   a = ReadStatisticalModel(first), b = ReadStatisticalModel(second);
+  const auto & x = a->GetContent();
+  const auto & y = b->GetContent();
+  double       mean = 0;
+  for (std::size_t i = 0; i < x.mean.points.size(); ++i)
+  {
+    mean = std::max(mean, (x.mean.points[i] - y.mean.points[i]).norm());
+  }
+  std::cout << json{ { "mean", mean },
+                     { "shape", CompareModes(x.shape, y.shape, count) },
+                     { "density", CompareModes(x.density, y.density, count) } }
             << std::endl;
 }
 } // namespace
@@ -474,9 +448,17 @@ main(int argc, char ** argv)
     {
       Population(arguments[1], std::stol(arguments[2]), std::stod(arguments[3]));
     }
-    else if (argc == 4 && arguments[0] == "memory")
+    else if (argc == 7 && arguments[0] == "samples")
     {
-      Memory(arguments[1], std::stoul(arguments[2]));
+      Samples(arguments[1],
+              arguments[2],
+              static_cast<unsigned>(std::stoul(arguments[3])),
+              static_cast<unsigned>(std::stoul(arguments[4])),
+              std::stod(arguments[5]));
+    }
+    else if (argc == 5 && arguments[0] == "compare")
+    {
+      Compare(arguments[1], arguments[2], std::stol(arguments[3]));
     }
     else
     {

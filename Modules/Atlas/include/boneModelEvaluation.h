@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace bone
@@ -63,19 +64,24 @@ struct EvaluationParameters
 
 /** \brief Compactness, generalisation by leave-one-out and specificity of shapes, mm: mean distance of points.
  *
- * The shapes (#subjects of #p points) are aligned first. A subject left out is aligned to the mean of the others. All
- * models are of full rank and cut to the number of modes. Throws std::invalid_argument for fewer than three subjects.
- */
+ * The shapes (#subjects of #p points) are aligned first. A subject left out is aligned to the mean of the others. The
+ * model of the others is that of all with the subject taken out of their sum of squares and products: exact for up to
+ * 256 subjects, and beyond within the span of 128 directions found from all of them. Time is linear in the number of
+ * subjects. Throws std::invalid_argument for fewer than three. */
 std::vector<ModelQuality>
 EvaluateShapes(std::vector<std::vector<Vector3>> shapes, const EvaluationParameters & parameters);
 
+/** Calls visit(coefficients) for every subject, in order; it is called once a pass. */
+using CoefficientPass = std::function<void(const std::function<void(const std::vector<double> &)> & visit)>;
+
 /** \brief Compactness and generalisation by leave-one-out of densities, in density units over the volume of `mesh`.
  *
- * `coefficients`: one column a subject, all in memory; `mesh` gives degree and volumes. Throws std::invalid_argument
- * for fewer than three subjects or a mesh that does not match. */
+ * `count` subjects, who are not kept: there are two passes. `mesh` gives degree and volumes. Models of the others as
+ * of \ref EvaluateShapes. Throws std::invalid_argument for fewer than three subjects or a mesh that does not match. */
 std::vector<DensityQuality>
 EvaluateDensities(const MeshArrays &           mesh,
-                  const Eigen::MatrixXd &      coefficients,
+                  std::size_t                  count,
+                  const CoefficientPass &      subjects,
                   const EvaluationParameters & parameters);
 
 /** Difference of two coefficient vectors on the mesh. */

@@ -30,9 +30,15 @@ struct TrainingResult
   std::vector<SubjectDeviation> subjects;
 };
 
-/** The kernel of \ref StatisticalModelEstimator. Throws itk::ExceptionObject. */
+/** \brief The kernel of \ref StatisticalModelEstimator.
+ *
+ * `former`: an atlas that the subjects are added to, whose inner product of densities, kind of alignment where it is by
+ * similarity, and mean pose are kept; where it is given one subject is enough. Throws itk::ExceptionObject. */
 TrainingResult
-TrainModel(const TrainingSet & set, const StatisticalModelParameters & parameters, const Execution & execution = {});
+TrainModel(const TrainingSet &                set,
+           const StatisticalModelParameters & parameters,
+           const Execution &                  execution = {},
+           const StatisticalModelContent *    former = nullptr);
 
 /** Modified z-scores 0.6745 (x - median) / median |x - median| (Iglewicz & Hoaglin 1993); 0 where all are equal. */
 std::vector<double>

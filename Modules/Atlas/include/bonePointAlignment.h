@@ -7,6 +7,8 @@
 #include "boneAlignmentKind.h"
 #include "boneTypes.h"
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace bone
@@ -63,13 +65,28 @@ struct ProcrustesResult
   int                    iterations{ 0 };
 };
 
+/** Shapes of the same points that need not be in memory at once. */
+struct ShapeSource
+{
+  std::size_t                                                      count{ 0 };
+  std::function<void(std::size_t i, std::vector<Vector3> & shape)> load; ///< called in ascending order within a pass
+};
+
 /** \brief Aligns shapes to their mean, in turn, until the mean stays (J. C. Gower, doi:10.1007/BF02291478).
  *
- * `shapes` (#subjects of #p points each) are moved. The mean's frame is the mean of the subjects' own: neither the
- * order of subjects nor, up to that frame, their poses matter. With Similarity the mean keeps the geometric mean of the
- * sizes. None leaves the shapes where they are. Throws std::invalid_argument where point counts differ. */
+ * Every turn is a pass over the source. The mean's frame is the mean of the subjects' own: neither the order of
+ * subjects nor, up to that frame, their poses matter. With Similarity the mean keeps the geometric mean of the sizes.
+ * With None all maps are the identity. Throws std::invalid_argument where point counts differ. */
+ProcrustesResult
+AlignShapes(const ShapeSource & source, AlignmentKind kind);
+
+/** The same for shapes in memory, which are moved. */
 ProcrustesResult
 AlignShapes(std::vector<std::vector<Vector3>> & shapes, AlignmentKind kind);
+
+/** The points moved by the map. */
+void
+Apply(const AffineMap & map, std::vector<Vector3> & points);
 } // namespace bone
 
 #endif

@@ -19,18 +19,20 @@ namespace bone
  * Output: \ref StatisticalModel.
  *
  * Shapes are brought together by generalised Procrustes analysis, in the mean of the subjects' own frames. Principal
- * modes of the stacked coordinates and, apart from them, of the stacked Bernstein coefficients come from the matrix of
- * inner products between subjects, in double. Subjects' densities are read one after the other; only shapes, a block of
- * densities and the modes are in memory.
+ * modes of the stacked coordinates and, apart from them, of the stacked Bernstein coefficients are accumulated in
+ * double, in passes over the subjects that are linear in their number and in the memory that Memory gives. They are
+ * exact where all subjects fit; beyond, where the population varies in no more directions than are held, and nearly so
+ * for the leading modes elsewhere. With SetAtlas() subjects are added to a model.
  *
  * Parameters: \ref StatisticalModelParameters. With Combined there is Cootes' combined model of both too. The
  * inner product of densities is their integral over the mean mesh, so that cells count by their volume and modes are
  * those of the density as a function, whatever its degree; with CoefficientProduct each coefficient counts alike, as in
- * the paper (6.2). WithinCellWeight is low by default, because most of the variation within a cell is the scanner's blur
- * at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
+ * the paper (6.2). WithinCellWeight is low by default, because most of the variation within a cell is the scanner's
+ * blur at the layers' surfaces and what is left of the registration's error, which differ from subject to subject.
  *
  * Results do not depend on the number of threads. Throws itk::ExceptionObject where there are fewer than two subjects,
- * one has another topology, degree or quantity than the first, or a parameter is out of range.
+ * one has another topology, degree or quantity than the first or a
+ * name that the atlas has already, or a parameter is out of range.
  *
  * \tparam TMesh a \ref DensityMesh, of double or float coordinates */
 template <typename TMesh = DensityMesh<double>>
@@ -69,6 +71,13 @@ public:
   {
     return itkDynamicCastInDebugMode<const TrainingSet *>(this->GetPrimaryInput());
   }
+  /** \brief A model that the subjects are added to, without its own subjects; none: they are all there are.
+   *
+   * The model knows its subjects by their scores: what its modes leave out of them counts in the total variance alone.
+   * New subjects are aligned to its mean, and the inner product of densities is its own. */
+  itkSetInputMacro(Atlas, StatisticalModel);
+  itkGetInputMacro(Atlas, StatisticalModel);
+
   StatisticalModel *
   GetOutput();
   const StatisticalModel *

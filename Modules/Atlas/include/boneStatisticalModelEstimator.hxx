@@ -90,7 +90,9 @@ StatisticalModelEstimator<TMesh>::GenerateData()
     }
     set = subjects.GetPointer();
   }
-  TrainingResult result = TrainModel(*set, this->GetParameters(), execution);
+  const auto *   atlas = this->GetAtlas();
+  TrainingResult result =
+    TrainModel(*set, this->GetParameters(), execution, atlas != nullptr ? &atlas->GetContent() : nullptr);
   m_Deviations = std::move(result.subjects);
   this->GetOutput()->SetContent(std::move(result.content));
   execution.Report(1.0);

@@ -6,8 +6,6 @@
 
 #include "boneAlignmentKind.h"
 
-#include <cstddef>
-
 namespace bone
 {
 // clang-format off
@@ -26,8 +24,9 @@ namespace bone
   value(double, outlierThreshold, OutlierThreshold, 3.5, ParameterRange::NotNegativeOrInfinite(), "", \
     "outlier-threshold", "Modified z-score of the distance to the mean above which a subject is an outlier; 0: none is") \
   flag(rejectOutliers, RejectOutliers, false, "reject-outliers", "Leave outliers out") \
-  value(std::size_t, blockBytes, BlockBytes, std::size_t(1) << 30, ParameterRange::AtLeast(0), "bytes", "", \
-    "Memory for densities held at once; does not change results beyond rounding")
+  value(double, memory, Memory, 1024.0, ParameterRange::NotNegative(), "MB", "memory", \
+    "For subjects and modes held at once. Where not all subjects fit, or there are more than 1023, modes are found in " \
+    "the span of half as many directions as fit, 512 or twice the largest number of modes at most")
 // clang-format on
 
 /** Parameters of StatisticalModelEstimator. */

@@ -4,7 +4,7 @@
 #include "boneModelEvaluation.h"
 
 #include "boneDensityFitKernel.h"
-#include "boneGramAnalysis.h"
+#include "boneLeftOutModels.h"
 #include "boneStatisticalModel.h"
 
 #include <cmath>
@@ -15,29 +15,15 @@ namespace bone
 {
 namespace
 {
-/** Full-rank modes of the columns of a matrix but one (-1: of all). */
-PrincipalModes
-ModesWithout(const Eigen::MatrixXd & columns, Eigen::Index left)
+/** A shape's points as one vector. */
+Eigen::Map<const Eigen::VectorXd>
+Stacked(const std::vector<Vector3> & shape)
 {
-  VectorSource source;
-  source.count = columns.cols() - (left >= 0 ? 1 : 0);
-  source.dimension = columns.rows();
-  source.load = [&columns, left](Eigen::Index i, double * y) {
-    Eigen::Map<Eigen::VectorXd>(y, columns.rows()) = columns.col(left >= 0 && i >= left ? i + 1 : i);
-  };
-  return AnalyzeVectors(source, {}, {}, GramParameters());
-}
-
-/** The nearest vector to y of the model with k modes. */
-Eigen::VectorXd
-Reconstruct(const PrincipalModes & model, const Eigen::VectorXd & y, Eigen::Index k)
-{
-  const auto modes = model.modes.leftCols(std::min(k, model.GetNumberOfModes()));
-  return model.mean + modes * (modes.transpose() * (y - model.mean));
+  return { shape.front().data(), 3 * static_cast<Eigen::Index>(shape.size()) };
 }
 
 double
-MeanDistance(const Eigen::VectorXd & a, const Eigen::VectorXd & b)
+MeanDistance(const Eigen::Ref<const Eigen::VectorXd> & a, const Eigen::Ref<const Eigen::VectorXd> & b)
 {
   const Eigen::Map<const Eigen::Matrix3Xd> x(a.data(), 3, a.size() / 3), y(b.data(), 3, b.size() / 3);
   return (x - y).colwise().norm().mean();
@@ -62,28 +48,30 @@ UsableModes(const EvaluationParameters & parameters, Eigen::Index subjects)
 }
 
 double
-Compactness(const PrincipalModes & model, int k)
+Compactness(const ModeAccumulator & model, int k)
 {
-  const Eigen::Index count = std::min<Eigen::Index>(k, model.GetNumberOfModes());
-  return model.totalVariance > 0 ? model.variances.head(count).sum() / model.totalVariance : 1.0;
+  const Eigen::Index count = std::min<Eigen::Index>(k, model.GetVariances().size());
+  const double       total = model.GetTotalVariance();
+  return total > 0 ? model.GetVariances().head(count).sum() / total : 1.0;
 }
 
 MeanWithError
-Specificity(const PrincipalModes &       model,
-            const Eigen::MatrixXd &      columns,
-            int                          k,
-            const EvaluationParameters & parameters)
+Specificity(const ModeAccumulator &                   model,
+            const std::vector<std::vector<Vector3>> & shapes,
+            int                                       k,
+            const EvaluationParameters &              parameters)
 {
-  std::vector<double> distances;
+  const Eigen::Index    count = std::min<Eigen::Index>(k, model.GetVariances().size());
+  const Eigen::VectorXd deviation = model.GetVariances().head(count).cwiseSqrt();
+  std::vector<double>   distances;
   for (int s = 0; s < parameters.samples; ++s)
   {
-    const Eigen::Index    count = std::min<Eigen::Index>(k, model.GetNumberOfModes());
-    const Eigen::VectorXd sample =
-      model.Synthesize(SampleCoefficients(count, parameters.seed + static_cast<std::uint64_t>(s)));
-    double nearest = std::numeric_limits<double>::max();
-    for (Eigen::Index i = 0; i < columns.cols(); ++i)
+    const Eigen::VectorXd b = SampleCoefficients(count, parameters.seed + static_cast<std::uint64_t>(s));
+    const Eigen::VectorXd sample = model.GetMean() + model.GetModes().leftCols(count) * deviation.cwiseProduct(b);
+    double                nearest = std::numeric_limits<double>::max();
+    for (const auto & shape : shapes)
     {
-      nearest = std::min(nearest, MeanDistance(sample, columns.col(i)));
+      nearest = std::min(nearest, MeanDistance(sample, Stacked(shape)));
     }
     distances.push_back(nearest);
   }
@@ -122,36 +110,31 @@ EvaluateShapes(std::vector<std::vector<Vector3>> shapes, const EvaluationParamet
   const auto             n = static_cast<Eigen::Index>(shapes.size());
   const std::vector<int> modes = UsableModes(parameters, n);
   AlignShapes(shapes, parameters.alignment);
-  Eigen::MatrixXd columns(3 * static_cast<Eigen::Index>(shapes.front().size()), n);
-  for (Eigen::Index i = 0; i < n; ++i)
+  LeftOutModels models(Stacked(shapes.front()).size(), n);
+  for (const auto & shape : shapes)
   {
-    columns.col(i) = StackPoints(shapes[static_cast<std::size_t>(i)]);
+    models.Next() = Stacked(shape);
   }
+  models.Finish();
   std::vector<std::vector<double>> errors(modes.size());
-  for (Eigen::Index i = 0; i < n; ++i)
+  for (const auto & shape : shapes)
   {
-    const PrincipalModes model = ModesWithout(columns, i);
-    auto &               shape = shapes[static_cast<std::size_t>(i)];
-    const AffineMap      pose = AlignToMean(shape, UnstackPoints(model.mean), parameters.alignment);
-    for (Vector3 & x : shape)
-    {
-      x = pose(x);
-    }
-    const Eigen::VectorXd y = StackPoints(shape);
-    for (std::size_t m = 0; m < modes.size(); ++m)
-    {
-      errors[m].push_back(MeanDistance(Reconstruct(model, y, modes[m]), y));
-    }
+    const Eigen::VectorXd y = Stacked(shape);
+    std::vector<Vector3>  moved = shape;
+    Apply(AlignToMean(shape, UnstackPoints(models.MeanWithout(y)), parameters.alignment), moved);
+    const Eigen::VectorXd x = Stacked(moved);
+    models.Reconstruct(y, x, modes, [&](std::size_t m, const Eigen::VectorXd & nearest) {
+      errors[m].push_back(MeanDistance(nearest, x));
+    });
   }
-  const PrincipalModes      whole = ModesWithout(columns, -1);
   std::vector<ModelQuality> result;
   for (std::size_t m = 0; m < modes.size(); ++m)
   {
     ModelQuality quality;
     quality.modes = modes[m];
-    quality.compactness = Compactness(whole, modes[m]);
+    quality.compactness = Compactness(models.GetAll(), modes[m]);
     quality.generalisation = Summarize(errors[m]);
-    quality.specificity = Specificity(whole, columns, modes[m], parameters);
+    quality.specificity = Specificity(models.GetAll(), shapes, modes[m], parameters);
     result.push_back(quality);
   }
   return result;
@@ -195,34 +178,41 @@ CompareDensities(const MeshArrays & mesh, const Eigen::VectorXd & first, const E
 
 std::vector<DensityQuality>
 EvaluateDensities(const MeshArrays &           mesh,
-                  const Eigen::MatrixXd &      coefficients,
+                  std::size_t                  count,
+                  const CoefficientPass &      subjects,
                   const EvaluationParameters & parameters)
 {
-  const Eigen::Index     n = coefficients.cols();
-  const std::vector<int> modes = UsableModes(parameters, n);
+  const std::vector<int> modes = UsableModes(parameters, static_cast<Eigen::Index>(count));
+  const auto             dimension = static_cast<Eigen::Index>(mesh.coefficients.size());
+  const auto             vectorOf = [dimension](const std::vector<double> & coefficients) {
+    if (static_cast<Eigen::Index>(coefficients.size()) != dimension)
+    {
+      throw std::invalid_argument("Densities to evaluate must have the coefficients of the mesh.");
+    }
+    return Eigen::Map<const Eigen::VectorXd>(coefficients.data(), dimension);
+  };
+  LeftOutModels models(dimension, static_cast<Eigen::Index>(count));
+  subjects([&](const std::vector<double> & own) { models.Next() = vectorOf(own); });
+  models.Finish();
   struct Errors
   {
     std::vector<double> bias, meanAbsolute, rootMeanSquare;
   };
   std::vector<Errors> errors(modes.size());
-  for (Eigen::Index i = 0; i < n; ++i)
-  {
-    const PrincipalModes model = ModesWithout(coefficients, i);
-    for (std::size_t m = 0; m < modes.size(); ++m)
-    {
-      const Eigen::VectorXd   y = coefficients.col(i);
-      const DensityDifference difference = CompareDensities(mesh, Reconstruct(model, y, modes[m]), y);
+  subjects([&](const std::vector<double> & own) {
+    const Eigen::VectorXd y = vectorOf(own);
+    models.Reconstruct(y, y, modes, [&](std::size_t m, const Eigen::VectorXd & nearest) {
+      const DensityDifference difference = CompareDensities(mesh, nearest, y);
       errors[m].bias.push_back(difference.bias);
       errors[m].meanAbsolute.push_back(difference.meanAbsolute);
       errors[m].rootMeanSquare.push_back(difference.rootMeanSquare);
-    }
-  }
-  const PrincipalModes        whole = ModesWithout(coefficients, -1);
+    });
+  });
   std::vector<DensityQuality> result;
   for (std::size_t m = 0; m < modes.size(); ++m)
   {
     result.push_back({ modes[m],
-                       Compactness(whole, modes[m]),
+                       Compactness(models.GetAll(), modes[m]),
                        Summarize(errors[m].bias),
                        Summarize(errors[m].meanAbsolute),
                        Summarize(errors[m].rootMeanSquare) });

@@ -4,38 +4,38 @@
 #include "boneModelTraining.h"
 
 #include "boneBernstein.h"
-#include "boneGramAnalysis.h"
 #include "bonePointAlignment.h"
 #include "boneSymmetricEigen.h"
+#include "boneVectorAnalysis.h"
 
 #include <itkMacro.h>
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 namespace bone
 {
 namespace
 {
-using Shapes = std::vector<std::vector<Vector3>>;
-
-/** Throws where a subject is not on the topology of the first. */
+/** Throws where a subject is not on the topology of the first, or of the atlas that it is added to. */
 void
-VerifySubject(const TrainingSet & set, std::size_t i, const MeshArrays & mesh, const MeshArrays & first)
+VerifySubject(const std::string & name,
+              const MeshArrays &  mesh,
+              const std::string & firstName,
+              const MeshArrays &  first)
 {
-  const std::string name = set.GetSubjectName(i);
   if (mesh.points.size() != first.points.size() || mesh.tetrahedra != first.tetrahedra)
   {
     itkGenericExceptionMacro(
-      "Subject " << name << " has another topology than " << set.GetSubjectName(0) << " (" << mesh.points.size()
-                 << " points and " << mesh.tetrahedra.size() << " tetrahedra, not " << first.points.size() << " and "
+      "Subject " << name << " has another topology than " << firstName << " (" << mesh.points.size() << " points and "
+                 << mesh.tetrahedra.size() << " tetrahedra, not " << first.points.size() << " and "
                  << first.tetrahedra.size() << ", or in another order): register the standard model to it first.");
   }
   if (mesh.maximumDegree != first.maximumDegree)
   {
-    itkGenericExceptionMacro("Subject " << name << " has density of degree " << mesh.maximumDegree << ", "
-                                        << set.GetSubjectName(0) << " of " << first.maximumDegree
-                                        << " (-1: none): fit all with one degree.");
+    itkGenericExceptionMacro("Subject " << name << " has density of degree " << mesh.maximumDegree << ", " << firstName
+                                        << " of " << first.maximumDegree << " (-1: none): fit all with one degree.");
   }
   if (mesh.HasDensity() &&
       std::any_of(mesh.degree.begin(), mesh.degree.end(), [&mesh](int d) { return d != mesh.maximumDegree; }))
@@ -45,7 +45,7 @@ VerifySubject(const TrainingSet & set, std::size_t i, const MeshArrays & mesh, c
   if (mesh.quantity != first.quantity)
   {
     itkGenericExceptionMacro("Subject " << name << " has density in " << DensityQuantityName(mesh.quantity) << ", "
-                                        << set.GetSubjectName(0) << " in " << DensityQuantityName(first.quantity)
+                                        << firstName << " in " << DensityQuantityName(first.quantity)
                                         << ": bring all to one unit.");
   }
   for (const Vector3 & x : mesh.points)
@@ -96,29 +96,107 @@ VolumeWeights(const MeshArrays & mesh)
   return (weights / mean).cwiseMax(1e-6); // a flat cell of the mean keeps a weight that can be divided by
 }
 
-VectorSource
-ShapeSource(const Shapes & shapes)
+/** \class ShapeStore
+ * \brief The subjects' points: in memory, or, where they need more than is given, read from the set at every turn. */
+class ShapeStore
 {
-  const auto d = 3 * static_cast<Eigen::Index>(shapes.front().size());
-  return { static_cast<Eigen::Index>(shapes.size()), d, [&shapes, d](Eigen::Index i, double * y) {
-            const auto & shape = shapes[static_cast<std::size_t>(i)];
+public:
+  ShapeStore(const TrainingSet & set, double bytes)
+    : m_Set(set)
+    , m_Bytes(bytes)
+  {}
+  /** Subject after subject. */
+  void
+  Add(std::vector<Vector3> && points)
+  {
+    m_Points = points.size();
+    const double each = static_cast<double>(m_Points * sizeof(Vector3));
+    if (each * static_cast<double>(m_Set.GetNumberOfSubjects()) <= m_Bytes)
+    {
+      m_Shapes.push_back(std::move(points));
+    }
+  }
+  void
+  Load(std::size_t i, std::vector<Vector3> & shape) const
+  {
+    shape = m_Shapes.empty() ? m_Set.GetSubject(i).points : m_Shapes[i];
+    if (shape.size() != m_Points)
+    {
+      itkGenericExceptionMacro("Subject " << m_Set.GetSubjectName(i) << " changed while it was read.");
+    }
+  }
+
+private:
+  const TrainingSet &               m_Set;
+  double                            m_Bytes;
+  std::size_t                       m_Points{ 0 };
+  std::vector<std::vector<Vector3>> m_Shapes;
+};
+
+/** What a model is trained from. */
+struct TrainingTask
+{
+  const TrainingSet &                set;
+  const StatisticalModelParameters & parameters;
+  const StatisticalModelContent *    former; ///< the atlas that subjects are added to, if there is one
+  MeshArrays                         topology;
+  ShapeStore                         shapes;
+  std::vector<std::size_t>           chosen;
+};
+
+/** The chosen subjects' points, each moved by its map. */
+VectorSource
+MovedShapes(const TrainingTask & task, const std::vector<AffineMap> & maps)
+{
+  const auto d = 3 * static_cast<Eigen::Index>(task.topology.points.size());
+  return { static_cast<Eigen::Index>(maps.size()), d, [&task, &maps, d](Eigen::Index i, double * y) {
+            const auto           k = static_cast<std::size_t>(i);
+            std::vector<Vector3> shape;
+            task.shapes.Load(task.chosen[k], shape);
+            Apply(maps[k], shape);
             std::copy_n(shape.front().data(), d, y);
           } };
 }
 
 /** Coefficients of the chosen subjects. */
 VectorSource
-DensitySource(const TrainingSet & set, const std::vector<std::size_t> & chosen, Eigen::Index dimension)
+Densities(const TrainingTask & task)
 {
-  return { static_cast<Eigen::Index>(chosen.size()), dimension, [&set, &chosen, dimension](Eigen::Index i, double * y) {
-            const MeshArrays mesh = set.GetSubject(chosen[static_cast<std::size_t>(i)]);
-            if (static_cast<Eigen::Index>(mesh.coefficients.size()) != dimension)
+  const auto d = static_cast<Eigen::Index>(task.topology.coefficients.size());
+  return { static_cast<Eigen::Index>(task.chosen.size()), d, [&task, d](Eigen::Index i, double * y) {
+            const std::size_t subject = task.chosen[static_cast<std::size_t>(i)];
+            const MeshArrays  mesh = task.set.GetSubject(subject);
+            if (static_cast<Eigen::Index>(mesh.coefficients.size()) != d)
             {
-              itkGenericExceptionMacro("Subject " << set.GetSubjectName(chosen[static_cast<std::size_t>(i)])
-                                                  << " changed while it was read.");
+              itkGenericExceptionMacro("Subject " << task.set.GetSubjectName(subject) << " changed while it was read.");
             }
             std::copy(mesh.coefficients.begin(), mesh.coefficients.end(), y);
           } };
+}
+
+/** The maps of the chosen subjects to the mean's frame. */
+std::vector<AffineMap>
+AlignSubjects(const TrainingTask & task, std::vector<Vector3> & mean)
+{
+  const ShapeSource source{ task.chosen.size(), [&task](std::size_t i, std::vector<Vector3> & shape) {
+                             task.shapes.Load(task.chosen[i], shape);
+                           } };
+  if (task.former == nullptr)
+  {
+    ProcrustesResult found = AlignShapes(source, task.parameters.alignment);
+    mean = std::move(found.mean);
+    return std::move(found.maps);
+  }
+  mean = task.former->mean.points;
+  const AlignmentKind    kind = task.former->similarity ? AlignmentKind::Similarity : task.parameters.alignment;
+  std::vector<AffineMap> maps;
+  std::vector<Vector3>   shape;
+  for (std::size_t i = 0; i < source.count; ++i)
+  {
+    source.load(i, shape);
+    maps.push_back(AlignToMean(shape, mean, kind));
+  }
+  return maps;
 }
 
 CombinedModes
@@ -146,108 +224,178 @@ Combine(const StatisticalModelContent & content, double proportion)
   return combined;
 }
 
-double
-RootMeanSquare(const double * a, const double * b, std::size_t count, std::size_t per)
+/** Reads every subject once: verifies it and takes its shape. Leaves the mesh of the first, or of the atlas. */
+void
+ReadSubjects(TrainingTask & task, const Execution & execution)
 {
-  double sum = 0;
-  for (std::size_t i = 0; i < count; ++i)
+  const std::size_t     n = task.set.GetNumberOfSubjects();
+  std::set<std::string> names;
+  std::string           first = "the atlas";
+  if (task.former != nullptr)
   {
-    sum += (a[i] - b[i]) * (a[i] - b[i]);
+    task.topology = task.former->mean;
+    names.insert(task.former->subjects.begin(), task.former->subjects.end());
   }
-  return std::sqrt(sum / static_cast<double>(count / per));
-}
-
-/** Reads every subject once: verifies it, takes its shape, and leaves the first one's mesh. */
-MeshArrays
-ReadShapes(const TrainingSet & set, const Execution & execution, Shapes & shapes)
-{
-  const std::size_t n = set.GetNumberOfSubjects();
-  MeshArrays        first;
   for (std::size_t i = 0; i < n; ++i)
   {
-    MeshArrays mesh = set.GetSubject(i);
-    if (i == 0)
+    MeshArrays        mesh = task.set.GetSubject(i);
+    const std::string name = task.set.GetSubjectName(i);
+    if (i == 0 && task.former == nullptr)
     {
-      first = mesh;
+      first = name;
+      task.topology = mesh;
     }
-    VerifySubject(set, i, mesh, first);
-    shapes.push_back(std::move(mesh.points));
+    VerifySubject(name, mesh, first, task.topology);
+    if (names.count(name) != 0)
+    {
+      itkGenericExceptionMacro("Subject " << name << " is in the atlas already: leave it out, or name it otherwise.");
+    }
+    task.shapes.Add(std::move(mesh.points));
     execution.Report(static_cast<double>(i + 1) / static_cast<double>(n));
   }
-  return first;
 }
 
-void
-FindDeviations(const TrainingSet &             set,
-               const Shapes &                  shapes,
-               const StatisticalModelContent & content,
-               double                          threshold,
-               const Execution &               execution,
-               std::vector<SubjectDeviation> & subjects)
+/** Root mean square distances to the mean, of subjects in their order. */
+struct Distances
 {
-  std::vector<double> shape, density;
-  for (std::size_t i = 0; i < shapes.size(); ++i)
+  std::vector<double> shape;   ///< of points, mm
+  std::vector<double> density; ///< of coefficients; empty: there are none
+};
+
+/** Those of vectors that modes make of their scores, and, on average, of what the modes leave out. */
+std::vector<double>
+DistancesOfScores(const PrincipalModes & modes, const Eigen::MatrixXd & scores, double count, bool withRest)
+{
+  const Eigen::MatrixXd scaled = scores * modes.variances.cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd products = modes.modes.transpose() * modes.modes;
+  const Eigen::VectorXd squares = (scaled * products).cwiseProduct(scaled).rowwise().sum();
+  const double          rest = withRest ? std::max(0.0, modes.totalVariance - modes.variances.sum()) : 0.0;
+  std::vector<double>   distances;
+  for (const double square : squares)
   {
-    execution.Report(static_cast<double>(i) / static_cast<double>(shapes.size()));
-    shape.push_back(
-      RootMeanSquare(shapes[i].front().data(), content.mean.points.front().data(), 3 * shapes[i].size(), 3));
-    if (content.mean.HasDensity())
-    {
-      const MeshArrays mesh = set.GetSubject(i);
-      density.push_back(
-        RootMeanSquare(mesh.coefficients.data(), content.mean.coefficients.data(), mesh.coefficients.size(), 1));
-    }
+    distances.push_back(std::sqrt((square + rest) / count));
   }
-  const std::vector<double> shapeScores = ModifiedScores(shape), densityScores = ModifiedScores(density);
-  for (std::size_t i = 0; i < shapes.size(); ++i)
-  {
-    SubjectDeviation deviation;
-    deviation.name = set.GetSubjectName(i);
-    deviation.shape = shape[i];
-    deviation.shapeScore = shapeScores[i];
-    deviation.density = density.empty() ? 0.0 : density[i];
-    deviation.densityScore = density.empty() ? 0.0 : densityScores[i];
-    deviation.outlier = threshold > 0 && std::max(deviation.shapeScore, deviation.densityScore) > threshold;
-    subjects.push_back(deviation);
-  }
+  return distances;
 }
 
-/** Aligns the chosen shapes and finds all modes. `shapes` are moved. */
+/** The model of the chosen subjects, and how far each is from the mean, those of the atlas first. */
 StatisticalModelContent
-AnalyzeSubjects(const TrainingSet &                set,
-                const std::vector<std::size_t> &   chosen,
-                const MeshArrays &                 topology,
-                Shapes &                           shapes,
-                const StatisticalModelParameters & parameters,
-                const Execution &                  execution)
+AnalyzeSubjects(const TrainingTask & task, const Execution & execution, Distances & distances)
 {
-  StatisticalModelContent content;
-  content.mean = topology;
-  content.similarity = parameters.alignment == AlignmentKind::Similarity;
+  const StatisticalModelParameters & parameters = task.parameters;
+  const StatisticalModelContent *    former = task.former;
+  const auto                         points = static_cast<double>(task.topology.points.size());
+  const auto                         coefficients = static_cast<double>(task.topology.coefficients.size());
+  StatisticalModelContent            content;
+  content.mean = task.topology;
+  content.similarity = former != nullptr ? former->similarity : parameters.alignment == AlignmentKind::Similarity;
   execution.ThrowIfAborted();
-  content.mean.points = AlignShapes(shapes, parameters.alignment).mean;
-  GramParameters gram{ parameters.varianceProportion, parameters.maximumModes, parameters.blockBytes };
-  content.shape = AnalyzeVectors(ShapeSource(shapes), {}, {}, gram, &content.shapeScores, execution.Part(0.1, 0.4));
-  if (topology.HasDensity())
+  const std::vector<AffineMap> maps = AlignSubjects(task, content.mean.points);
+  const auto                   note = [](std::vector<double> & list, double count) {
+    return [&list, count](const Eigen::VectorXd & y, const Eigen::VectorXd & mean) {
+      list.push_back(std::sqrt((y - mean).squaredNorm() / count));
+    };
+  };
+  const AnalysisParameters analysis{ parameters.varianceProportion,
+                                     parameters.maximumModes,
+                                     static_cast<std::size_t>(parameters.memory * 1e6) };
+  FormerVectors            formerShapes, formerDensities;
+  if (former != nullptr)
+  {
+    formerShapes = { &former->shape, &former->shapeScores };
+    formerDensities = { &former->density, &former->densityScores };
+    distances.shape = DistancesOfScores(former->shape, former->shapeScores, points, true);
+  }
+  content.shape = AnalyzeVectors(MovedShapes(task, maps),
+                                 {},
+                                 {},
+                                 analysis,
+                                 content.shapeScores,
+                                 execution.Part(0.1, 0.3),
+                                 formerShapes,
+                                 note(distances.shape, points));
+  content.mean.points = UnstackPoints(content.shape.mean);
+  if (task.topology.HasDensity())
   {
     const Eigen::VectorXd weights = parameters.coefficientProduct ? Eigen::VectorXd() : VolumeWeights(content.mean);
     const Eigen::MatrixXd block = parameters.coefficientProduct
                                     ? Eigen::MatrixXd()
                                     : BernsteinGram(content.mean.maximumDegree, parameters.withinCellWeight);
-    const auto            dimension = static_cast<Eigen::Index>(topology.coefficients.size());
-    content.density = AnalyzeVectors(
-      DensitySource(set, chosen, dimension), weights, block, gram, &content.densityScores, execution.Part(0.4, 1.0));
-    content.mean.coefficients.assign(content.density.mean.data(), content.density.mean.data() + dimension);
-    if (parameters.combined && content.density.GetNumberOfModes() > 0 && content.shape.GetNumberOfModes() > 0)
+    if (former != nullptr)
+    {
+      distances.density = DistancesOfScores(former->density, former->densityScores, coefficients, false);
+    }
+    content.density = AnalyzeVectors(Densities(task),
+                                     weights,
+                                     block,
+                                     analysis,
+                                     content.densityScores,
+                                     execution.Part(0.3, 1.0),
+                                     formerDensities,
+                                     note(distances.density, coefficients));
+    content.mean.coefficients.assign(content.density.mean.data(),
+                                     content.density.mean.data() + content.density.GetDimension());
+    const bool combined = parameters.combined || (former != nullptr && former->combined.variances.size() > 0);
+    if (combined && content.density.GetNumberOfModes() > 0 && content.shape.GetNumberOfModes() > 0)
     {
       content.combined = Combine(content, parameters.varianceProportion);
     }
   }
-  for (const std::size_t i : chosen)
+  if (former != nullptr)
   {
-    content.subjects.push_back(set.GetSubjectName(i));
+    content.subjects = former->subjects;
+  }
+  for (const std::size_t i : task.chosen)
+  {
+    content.subjects.push_back(task.set.GetSubjectName(i));
   }
   return content;
+}
+
+/** The set's subjects among all distances, of which theirs are the last. */
+std::vector<SubjectDeviation>
+FindDeviations(const TrainingSet & set, const Distances & distances, double threshold)
+{
+  const std::vector<double> shapeScores = ModifiedScores(distances.shape),
+                            densityScores = ModifiedScores(distances.density);
+  std::vector<SubjectDeviation> subjects;
+  const std::size_t             before = distances.shape.size() - set.GetNumberOfSubjects();
+  for (std::size_t i = 0; i < set.GetNumberOfSubjects(); ++i)
+  {
+    SubjectDeviation deviation;
+    deviation.name = set.GetSubjectName(i);
+    deviation.shape = distances.shape[before + i];
+    deviation.shapeScore = shapeScores[before + i];
+    if (!distances.density.empty())
+    {
+      deviation.density = distances.density[before + i];
+      deviation.densityScore = densityScores[before + i];
+    }
+    deviation.outlier = threshold > 0 && std::max(deviation.shapeScore, deviation.densityScore) > threshold;
+    subjects.push_back(deviation);
+  }
+  return subjects;
+}
+
+void
+VerifyTask(const TrainingSet &                set,
+           const StatisticalModelParameters & parameters,
+           const StatisticalModelContent *    former)
+{
+  const std::size_t count = set.GetNumberOfSubjects();
+  if (count < (former == nullptr ? 2u : 1u))
+  {
+    itkGenericExceptionMacro("The training set has " << count << " subjects; "
+                                                     << (former == nullptr ? "modes of variation need two or more."
+                                                                           : "there is none to add to the atlas."));
+  }
+  if (former != nullptr &&
+      (former->shapeScores.rows() < 2 || (parameters.alignment == AlignmentKind::Similarity && !former->similarity)))
+  {
+    itkGenericExceptionMacro("Subjects cannot be added to this atlas: it "
+                             << (former->shapeScores.rows() < 2 ? "does not hold the scores of its subjects."
+                                                                : "was trained without similarity."));
+  }
 }
 } // namespace
 
@@ -280,45 +428,45 @@ ModifiedScores(const std::vector<double> & values)
 }
 
 TrainingResult
-TrainModel(const TrainingSet & set, const StatisticalModelParameters & parameters, const Execution & execution)
+TrainModel(const TrainingSet &                set,
+           const StatisticalModelParameters & parameters,
+           const Execution &                  execution,
+           const StatisticalModelContent *    former)
 {
-  if (set.GetNumberOfSubjects() < 2)
-  {
-    itkGenericExceptionMacro("The training set has " << set.GetNumberOfSubjects()
-                                                     << " subjects; modes of variation need two or more.");
-  }
-  Shapes           shapes;
-  const MeshArrays topology = ReadShapes(set, execution.Part(0.0, 0.15), shapes);
-  if (parameters.combined && !topology.HasDensity())
+  VerifyTask(set, parameters, former);
+  TrainingTask task{ set, parameters, former, {}, ShapeStore(set, 1e6 * parameters.memory), {} };
+  ReadSubjects(task, execution.Part(0.0, 0.2));
+  if (parameters.combined && !task.topology.HasDensity())
   {
     itkGenericExceptionMacro("A combined model was asked for, but the subjects have no density.");
   }
-  TrainingResult           result;
-  std::vector<std::size_t> chosen(shapes.size());
-  std::iota(chosen.begin(), chosen.end(), 0);
-  result.content = AnalyzeSubjects(set, chosen, topology, shapes, parameters, execution.Part(0.15, 0.65));
-  FindDeviations(set, shapes, result.content, parameters.outlierThreshold, execution.Part(0.65, 0.75), result.subjects);
-  if (parameters.rejectOutliers)
+  TrainingResult result;
+  Distances      distances;
+  task.chosen.resize(set.GetNumberOfSubjects());
+  std::iota(task.chosen.begin(), task.chosen.end(), 0);
+  result.content = AnalyzeSubjects(task, execution.Part(0.2, 0.7), distances);
+  result.subjects = FindDeviations(set, distances, parameters.outlierThreshold);
+  if (!parameters.rejectOutliers)
   {
-    Shapes kept;
-    chosen.clear();
-    for (std::size_t i = 0; i < shapes.size(); ++i)
+    return result;
+  }
+  task.chosen.clear();
+  for (std::size_t i = 0; i < result.subjects.size(); ++i)
+  {
+    result.subjects[i].used = !result.subjects[i].outlier;
+    if (result.subjects[i].used)
     {
-      result.subjects[i].used = !result.subjects[i].outlier;
-      if (result.subjects[i].used)
-      {
-        chosen.push_back(i);
-        kept.push_back(std::move(shapes[i]));
-      }
+      task.chosen.push_back(i);
     }
-    if (chosen.size() < 2)
-    {
-      itkGenericExceptionMacro("Fewer than two subjects are left after rejecting outliers: raise the threshold.");
-    }
-    if (chosen.size() < shapes.size())
-    {
-      result.content = AnalyzeSubjects(set, chosen, topology, kept, parameters, execution.Part(0.75, 1.0));
-    }
+  }
+  if (task.chosen.size() < (former == nullptr ? 2u : 1u))
+  {
+    itkGenericExceptionMacro("Fewer than two subjects are left after rejecting outliers: raise the threshold.");
+  }
+  if (task.chosen.size() < result.subjects.size())
+  {
+    Distances unused;
+    result.content = AnalyzeSubjects(task, execution.Part(0.7, 1.0), unused);
   }
   return result;
 }

@@ -57,24 +57,27 @@ FindMoments(const std::vector<Vector3> & from, const std::vector<Vector3> & to, 
   return m;
 }
 
-void
-Apply(const AffineMap & map, std::vector<Vector3> & points)
-{
-  for (Vector3 & x : points)
-  {
-    x = map(x);
-  }
-}
-
+/** The mean of the shapes, each moved by what `mapOf` returns for it. */
+template <typename TMapOf>
 std::vector<Vector3>
-MeanOf(const std::vector<std::vector<Vector3>> & shapes)
+MeanOf(const ShapeSource & source, const TMapOf & mapOf)
 {
-  std::vector<Vector3> mean(shapes.front().size(), Vector3::Zero());
-  for (const auto & shape : shapes)
+  std::vector<Vector3> mean, shape;
+  for (std::size_t i = 0; i < source.count; ++i)
   {
+    source.load(i, shape);
+    if (i == 0)
+    {
+      mean.assign(shape.size(), Vector3::Zero());
+    }
+    if (shape.empty() || shape.size() != mean.size())
+    {
+      throw std::invalid_argument("All shapes must have the same points.");
+    }
+    const AffineMap map = mapOf(i, shape);
     for (std::size_t p = 0; p < mean.size(); ++p)
     {
-      mean[p] += shape[p] / static_cast<double>(shapes.size());
+      mean[p] += map(shape[p]) / static_cast<double>(source.count);
     }
   }
   return mean;
@@ -155,55 +158,64 @@ AlignToMean(const std::vector<Vector3> & shape, const std::vector<Vector3> & mea
   return FitAlignment(mean, shape, kind).Inverse();
 }
 
-ProcrustesResult
-AlignShapes(std::vector<std::vector<Vector3>> & shapes, AlignmentKind kind)
+void
+Apply(const AffineMap & map, std::vector<Vector3> & points)
 {
-  if (shapes.empty() || kind == AlignmentKind::Affine)
+  for (Vector3 & x : points)
+  {
+    x = map(x);
+  }
+}
+
+ProcrustesResult
+AlignShapes(const ShapeSource & source, AlignmentKind kind)
+{
+  if (source.count == 0 || kind == AlignmentKind::Affine)
   {
     throw std::invalid_argument("Shapes are aligned rigidly or by similarity, and there must be one or more.");
   }
-  for (const auto & shape : shapes)
-  {
-    if (shape.size() != shapes.front().size() || shape.empty())
-    {
-      throw std::invalid_argument("All shapes must have the same points.");
-    }
-  }
   ProcrustesResult result;
-  result.maps.resize(shapes.size());
+  result.maps.resize(source.count);
+  const auto known = [&](std::size_t i, const std::vector<Vector3> &) { return result.maps[i]; };
   if (kind == AlignmentKind::None)
   {
-    result.mean = MeanOf(shapes);
+    result.mean = MeanOf(source, known);
     return result;
   }
-  result.mean = shapes.front();
-  const Vector3 origin = result.mean.front();
-  double        size = 0;
+  source.load(0, result.mean);
+  double size = 0;
   for (const Vector3 & x : result.mean)
   {
-    size = std::max(size, (x - origin).norm());
+    size = std::max(size, (x - result.mean.front()).norm());
   }
   double change = size;
   while (change > ProcrustesTolerance * size && result.iterations++ < MaximumProcrustesIterations)
   {
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-    {
-      const AffineMap step = AlignToMean(shapes[i], result.mean, kind);
-      Apply(step, shapes[i]);
-      result.maps[i] = Compose(step, result.maps[i]);
-    }
-    std::vector<Vector3> mean = MeanOf(shapes);
+    std::vector<Vector3> mean = MeanOf(source, [&](std::size_t i, const std::vector<Vector3> & shape) {
+      return result.maps[i] = AlignToMean(shape, result.mean, kind);
+    });
     Apply(AlignToMean(mean, result.mean, kind), mean); // it does not drift
     change = RootMeanSquare(mean, result.mean);
     result.mean = std::move(mean);
   }
   const AffineMap frame = ToMeanFrame(result.maps, result.mean);
+  for (AffineMap & map : result.maps)
+  {
+    map = Compose(frame, map);
+  }
+  result.mean = MeanOf(source, known);
+  return result;
+}
+
+ProcrustesResult
+AlignShapes(std::vector<std::vector<Vector3>> & shapes, AlignmentKind kind)
+{
+  ProcrustesResult result =
+    AlignShapes({ shapes.size(), [&shapes](std::size_t i, std::vector<Vector3> & shape) { shape = shapes[i]; } }, kind);
   for (std::size_t i = 0; i < shapes.size(); ++i)
   {
-    Apply(frame, shapes[i]);
-    result.maps[i] = Compose(frame, result.maps[i]);
+    Apply(result.maps[i], shapes[i]);
   }
-  result.mean = MeanOf(shapes);
   return result;
 }
 } // namespace bone

@@ -4,7 +4,9 @@
 #include "boneModelEvaluation.h"
 
 #include "boneAtlasTestPopulation.h"
+#include "boneStatisticalModel.h"
 
+#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 namespace
@@ -21,6 +23,17 @@ Shapes(unsigned count)
     shapes.push_back(subject.points);
   }
   return shapes;
+}
+
+CoefficientPass
+PassOver(const std::vector<MeshArrays> & subjects)
+{
+  return [&subjects](const std::function<void(const std::vector<double> &)> & visit) {
+    for (const MeshArrays & subject : subjects)
+    {
+      visit(subject.coefficients);
+    }
+  };
 }
 } // namespace
 
@@ -58,17 +71,47 @@ TEST(ModelEvaluation, DoesNotDependOnPose)
   }
 }
 
+TEST(ModelEvaluation, TheModelOfTheOthersIsTheirs)
+{
+  const auto           shapes = Shapes(9);
+  EvaluationParameters parameters;
+  parameters.modes = { 0, 2, 5, 7 };
+  parameters.alignment = AlignmentKind::None;
+  parameters.samples = 0;
+  std::vector<std::vector<double>> errors(parameters.modes.size());
+  for (std::size_t left = 0; left < shapes.size(); ++left)
+  {
+    Eigen::MatrixXd others(StackPoints(shapes[0]).size(), shapes.size() - 1);
+    for (std::size_t i = 0, column = 0; i < shapes.size(); ++i)
+    {
+      if (i != left)
+      {
+        others.col(static_cast<Eigen::Index>(column++)) = StackPoints(shapes[i]);
+      }
+    }
+    const Eigen::VectorXd                   mean = others.rowwise().mean(), y = StackPoints(shapes[left]);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(others.colwise() - mean, Eigen::ComputeThinU);
+    for (std::size_t m = 0; m < parameters.modes.size(); ++m)
+    {
+      const auto            modes = svd.matrixU().leftCols(parameters.modes[m]);
+      const Eigen::VectorXd rest = (y - mean) - modes * (modes.transpose() * (y - mean));
+      errors[m].push_back(rest.reshaped(3, rest.size() / 3).colwise().norm().mean());
+    }
+  }
+  const auto quality = EvaluateShapes(shapes, parameters);
+  for (std::size_t m = 0; m < parameters.modes.size(); ++m)
+  {
+    EXPECT_NEAR(quality[m].generalisation.mean, Summarize(errors[m]).mean, 1e-9) << m;
+    EXPECT_NEAR(quality[m].generalisation.standardError, Summarize(errors[m]).standardError, 1e-9) << m;
+  }
+}
+
 TEST(ModelEvaluation, DensitiesOfKnownPatternsAreReached)
 {
-  const auto      subjects = MakePopulation(8);
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(subjects[0].coefficients.size()), 8);
-  for (Eigen::Index i = 0; i < 8; ++i)
-  {
-    columns.col(i) = Eigen::Map<const Eigen::VectorXd>(subjects[i].coefficients.data(), columns.rows());
-  }
+  const auto           subjects = MakePopulation(8);
   EvaluationParameters parameters;
   parameters.modes = { 0, 3 };
-  const auto quality = EvaluateDensities(subjects[0], columns, parameters);
+  const auto quality = EvaluateDensities(subjects[0], subjects.size(), PassOver(subjects), parameters);
   EXPECT_GT(quality[0].rootMeanSquare.mean, 10.0);
   EXPECT_LT(quality[1].rootMeanSquare.mean, 1e-6);
   EXPECT_NEAR(quality[1].compactness, 1.0, 1e-9);

@@ -227,11 +227,183 @@ TEST(StatisticalModelEstimator, StreamedBlocksGiveTheSameModel)
 {
   const auto   subjects = MakePopulation(40, 0);
   const auto   whole = Estimate(subjects);
-  const auto   streamed = Estimate(subjects, [](Estimator * e) { e->SetBlockBytes(1); });
+  const auto   streamed = Estimate(subjects, [](Estimator * e) { e->SetMemory(0); });
   const auto & a = whole->GetOutput()->GetContent().density;
   const auto & b = streamed->GetOutput()->GetContent().density;
   ASSERT_EQ(a.GetNumberOfModes(), b.GetNumberOfModes());
   EXPECT_LT((a.modes - b.modes).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+namespace
+{
+/** Subjects whose densities vary in as many patterns as there are cells, each a tenth less than the one before. */
+std::vector<MeshArrays>
+MakeManifold(unsigned count)
+{
+  std::vector<MeshArrays>          subjects(count, MakeSubject(1, 0));
+  const auto                       d = static_cast<Eigen::Index>(subjects[0].coefficients.size());
+  std::mt19937                     generator(7);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd                  patterns(d, d);
+  for (double & x : patterns.reshaped())
+  {
+    x = normal(generator);
+  }
+  for (MeshArrays & subject : subjects)
+  {
+    Eigen::Map<Eigen::VectorXd> density(subject.coefficients.data(), d);
+    double                      size = 100;
+    for (Eigen::Index k = 0; k < d; ++k, size *= 0.9)
+    {
+      density += size * normal(generator) * patterns.col(k) / std::sqrt(static_cast<double>(d));
+    }
+  }
+  return subjects;
+}
+} // namespace
+
+TEST(StatisticalModelEstimator, LeadingModesHoldWhereMemoryDoesNot)
+{
+  const auto   subjects = MakeManifold(300);
+  const auto   whole = Estimate(subjects);
+  const auto   streamed = Estimate(subjects, [](Estimator * e) { e->SetMemory(0); });
+  const auto & a = whole->GetOutput()->GetContent().density;
+  const auto & b = streamed->GetOutput()->GetContent().density;
+  EXPECT_GT(a.GetNumberOfModes(), 60);
+  ASSERT_EQ(b.GetNumberOfModes(), 16); // half of the least that is held
+  EXPECT_NEAR(b.totalVariance, a.totalVariance, 1e-10 * a.totalVariance);
+  EXPECT_LT((a.mean - b.mean).norm(), 1e-10 * a.mean.norm());
+  EXPECT_LT(OrthonormalityError(b), 1e-10);
+  for (Eigen::Index k = 0; k < 8; ++k)
+  {
+    EXPECT_NEAR(b.variances[k], a.variances[k], 2e-3 * a.variances[k]) << k;
+    EXPECT_LE(b.variances[k], a.variances[k] * (1 + 1e-10)) << k; // of the data, in a subspace
+  }
+  // Scores are those of the subjects, and uncorrelated.
+  const auto &          content = streamed->GetOutput()->GetContent();
+  const Eigen::VectorXd last =
+    b.Project(Eigen::Map<const Eigen::VectorXd>(subjects.back().coefficients.data(), b.GetDimension()));
+  EXPECT_LT((content.densityScores.bottomRows(1).transpose() - last).norm(), 1e-8);
+  const Eigen::MatrixXd covariance = content.densityScores.transpose() * content.densityScores / 299.0;
+  EXPECT_LT((covariance - Eigen::MatrixXd::Identity(16, 16)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(StatisticalModelEstimator, ShapesThatDoNotFitAreReadAgain)
+{
+  const auto   subjects = MakePopulation(9);
+  const auto   held = Estimate(subjects);
+  const auto   read = Estimate(subjects, [](Estimator * e) { e->SetMemory(0.001); });
+  const auto & a = held->GetOutput()->GetContent();
+  const auto & b = read->GetOutput()->GetContent();
+  EXPECT_LT(LargestDistance(a.mean.points, b.mean.points), 1e-12);
+  EXPECT_LT((a.shapeScores - b.shapeScores).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+namespace
+{
+/** The model of the first subjects, and the others added to it. */
+Estimator::Pointer
+EstimateInTwoSteps(
+  const std::vector<MeshArrays> &          subjects,
+  std::size_t                              first,
+  const std::function<void(Estimator *)> & set = [](Estimator *) {})
+{
+  const auto before = Estimate({ subjects.begin(), subjects.begin() + static_cast<std::ptrdiff_t>(first) }, set);
+  auto       more = MeshTrainingSet<>::New();
+  for (std::size_t i = first; i < subjects.size(); ++i)
+  {
+    auto mesh = DensityMesh<double>::New();
+    mesh->SetArrays(subjects[i]);
+    more->AddSubject("subject " + std::to_string(i), mesh);
+  }
+  auto estimator = Estimator::New();
+  estimator->SetVarianceProportion(1.0);
+  set(estimator);
+  estimator->SetInput(more);
+  estimator->SetAtlas(before->GetOutput());
+  estimator->Update();
+  return estimator;
+}
+} // namespace
+
+TEST(StatisticalModelEstimator, SubjectsAddedToAModelOfFullRankGiveTheModelOfAll)
+{
+  const auto plain = [](Estimator * e) {
+    e->SetAlignment(AlignmentKind::None);
+    e->CoefficientProductOn();
+    e->CombinedOn();
+  };
+  const auto   subjects = MakePopulation(12);
+  const auto   whole = Estimate(subjects, plain);
+  const auto   added = EstimateInTwoSteps(subjects, 8, plain);
+  const auto & a = whole->GetOutput()->GetContent();
+  const auto & b = added->GetOutput()->GetContent();
+  EXPECT_EQ(a.subjects, b.subjects);
+  EXPECT_LT(LargestDistance(a.mean.points, b.mean.points), 1e-10);
+  ASSERT_EQ(a.shapeScores.cols(), b.shapeScores.cols());
+  EXPECT_LT((a.shape.modes - b.shape.modes).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((a.density.modes - b.density.modes).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((a.shapeScores - b.shapeScores).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((a.densityScores - b.densityScores).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_NEAR(a.density.totalVariance, b.density.totalVariance, 1e-9 * a.density.totalVariance);
+  EXPECT_LT((a.combined.variances - b.combined.variances).norm(), 1e-7 * a.combined.variances.norm());
+  ASSERT_EQ(added->GetSubjectDeviations().size(), 4u);
+  EXPECT_EQ(added->GetSubjectDeviations()[0].name, "subject 8");
+}
+
+TEST(StatisticalModelEstimator, SubjectsAddedInAnyPoseGiveNearlyTheModelOfAll)
+{
+  auto subjects = MakePopulation(24);
+  for (unsigned i = 20; i < subjects.size(); ++i)
+  {
+    Move(RandomPose(i), subjects[i].points);
+  }
+  const auto   whole = Estimate(subjects);
+  const auto   added = EstimateInTwoSteps(subjects, 20);
+  const auto & a = whole->GetOutput()->GetContent();
+  const auto & b = added->GetOutput()->GetContent();
+  EXPECT_LT((a.shape.variances.head(3) - b.shape.variances.head(3)).norm(), 1e-3 * a.shape.variances[0]);
+  EXPECT_LT((a.density.variances - b.density.variances).norm(), 1e-2 * a.density.variances[0]);
+}
+
+TEST(StatisticalModelEstimator, NamesOutliersAmongThoseAdded)
+{
+  auto subjects = MakePopulation(14);
+  for (double & c : subjects[12].coefficients)
+  {
+    c += 2000;
+  }
+  const auto added = EstimateInTwoSteps(subjects, 11, [](Estimator * e) { e->RejectOutliersOn(); });
+  ASSERT_EQ(added->GetSubjectDeviations().size(), 3u);
+  EXPECT_FALSE(added->GetSubjectDeviations()[0].outlier);
+  EXPECT_TRUE(added->GetSubjectDeviations()[1].outlier);
+  const auto & names = added->GetOutput()->GetContent().subjects;
+  EXPECT_EQ(std::count(names.begin(), names.end(), "subject 11"), 1);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "subject 12"), 0);
+}
+
+TEST(StatisticalModelEstimator, RefusesToAddWhatDoesNotBelong)
+{
+  const auto atlas = Estimate(MakePopulation(5));
+  const auto add = [&](const std::vector<MeshArrays> & subjects, AlignmentKind kind = AlignmentKind::Rigid) {
+    Estimate(subjects, [&](Estimator * e) {
+      e->SetAtlas(atlas->GetOutput());
+      e->SetAlignment(kind);
+    });
+  };
+  EXPECT_THROW(add({ MakeSubject(9) }), itk::ExceptionObject); // "subject 0" is in it
+  EXPECT_THROW(EstimateInTwoSteps({ MakeSubject(1), MakeSubject(2), MakeSubject(3, 1) }, 2), itk::ExceptionObject);
+  EXPECT_THROW(add({}), itk::ExceptionObject);
+  auto other = MeshTrainingSet<>::New();
+  auto mesh = DensityMesh<double>::New();
+  mesh->SetArrays(MakeSubject(9));
+  other->AddSubject("other", mesh);
+  auto estimator = Estimator::New();
+  estimator->SetInput(other);
+  estimator->SetAtlas(atlas->GetOutput());
+  EXPECT_NO_THROW(estimator->Update());
+  estimator->SetAlignment(AlignmentKind::Similarity);
+  EXPECT_THROW(estimator->Update(), itk::ExceptionObject);
 }
 
 TEST(StatisticalModelEstimator, KeepsTheShareOfVarianceAskedFor)

@@ -105,21 +105,25 @@ EvaluateAtlas(const TrainingSet & set, const StatisticalModel & model, AtlasRepo
   parameters.alignment = model.GetContent().similarity ? AlignmentKind::Similarity : AlignmentKind::Rigid;
   const std::size_t                 count = set.GetNumberOfSubjects();
   std::vector<std::vector<Vector3>> shapes;
-  Eigen::MatrixXd                   densities;
   for (std::size_t i = 0; i < count; ++i)
   {
-    const MeshArrays mesh = set.GetSubject(i);
-    shapes.push_back(mesh.points);
-    if (model.HasDensity())
-    {
-      const auto rows = static_cast<Eigen::Index>(mesh.coefficients.size());
-      densities.conservativeResize(rows, static_cast<Eigen::Index>(count));
-      densities.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXd>(mesh.coefficients.data(), rows);
-    }
+    shapes.push_back(set.GetSubject(i).points);
   }
   report.shape = EvaluateShapes(std::move(shapes), parameters);
-  report.density = model.HasDensity() ? EvaluateDensities(model.GetContent().mean, densities, parameters)
-                                      : std::vector<DensityQuality>();
+  report.density.clear();
+  if (model.HasDensity())
+  {
+    report.density = EvaluateDensities(
+      model.GetContent().mean,
+      count,
+      [&set, count](const std::function<void(const std::vector<double> &)> & visit) {
+        for (std::size_t i = 0; i < count; ++i)
+        {
+          visit(set.GetSubject(i).coefficients);
+        }
+      },
+      parameters);
+  }
 }
 
 namespace

@@ -105,7 +105,7 @@ VerifySubjects(const std::vector<SubjectFiles> & subjects)
 }
 
 std::vector<SubjectFiles>
-ReadSubjectList(const std::string & path)
+ReadSubjectList(const std::string & path, std::size_t least)
 {
   RequireReadableFile(path);
   std::ifstream             stream(path);
@@ -142,9 +142,10 @@ ReadSubjectList(const std::string & path)
     }
     subjects.push_back(subject);
   }
-  if (subjects.size() < 2)
+  if (subjects.size() < least)
   {
-    throw IOError(path, "the list must have two subjects or more, one a line");
+    throw IOError(
+      path, std::string("the list must have ") + (least == 1 ? "a subject" : "two subjects") + " or more, one a line");
   }
   NameSubjects(subjects);
   return subjects;

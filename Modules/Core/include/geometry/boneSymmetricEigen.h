@@ -17,7 +17,8 @@ struct SymmetricEigenOf
 };
 using SymmetricEigen = SymmetricEigenOf<Eigen::Dynamic>;
 
-/** By Eigen's SelfAdjointEigenSolver, which is compiled here alone; it reads the lower triangle. */
+/** By Eigen's SelfAdjointEigenSolver, which is compiled here alone; it reads the lower triangle. A matrix without
+ * entries has none. */
 template <int VSize>
 SymmetricEigenOf<VSize>
 EigenOf(const Eigen::Matrix<double, VSize, VSize> & symmetric);

@@ -11,6 +11,10 @@ template <int VSize>
 SymmetricEigenOf<VSize>
 EigenOf(const Eigen::Matrix<double, VSize, VSize> & symmetric)
 {
+  if (symmetric.size() == 0)
+  {
+    return {}; // Eigen's solver reads beyond it
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, VSize, VSize>> eigen(symmetric);
   return { eigen.eigenvalues(), eigen.eigenvectors() };
 }
