@@ -7,13 +7,12 @@
 #include "boneRefuse.h"
 #include "boneVtkFile.h"
 
-#include <itkImageRegionConstIteratorWithIndex.h>
+#include <itkImageScanlineConstIterator.h>
 #include <itkImageToImageFilter.h>
 #include <itkVectorImage.h>
 #include <itkVectorIndexSelectionCastImageFilter.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace bone
@@ -56,33 +55,46 @@ protected:
   void
   GenerateData() override
   {
-    using Limits = std::numeric_limits<LabelImage::PixelType>;
     const CTImage * values = this->GetInput();
-    RequireFinite(values, m_Path);
     this->AllocateOutputs();
-    const CTImage::RegionType                       region = this->GetOutput()->GetRequestedRegion();
-    LabelImage::PixelType *                         label = this->GetOutput()->GetBufferPointer();
-    itk::ImageRegionConstIteratorWithIndex<CTImage> it(values, region);
-    for (; !it.IsAtEnd(); ++it, ++label)
+    const CTImage::RegionType region = this->GetOutput()->GetRequestedRegion();
+    const auto                length = static_cast<std::size_t>(region.GetSize(0));
+    LabelImage::PixelType *   label = this->GetOutput()->GetBufferPointer();
+    for (itk::ImageScanlineConstIterator<CTImage> it(values, region); !it.IsAtEnd(); it.NextLine())
     {
-      const float value = it.Get();
-      if (!(value >= Limits::lowest() && value <= Limits::max()) || value != std::floor(value))
+      const float * row = values->GetBufferPointer() + values->ComputeOffset(it.GetIndex());
+      for (std::size_t x = 0; x < length; ++x, ++label)
       {
-        throw IOError(m_Path,
-                      Say("is no label map: its value at ",
-                          it.GetIndex(),
-                          " is ",
-                          value,
-                          ", no whole number from ",
-                          Limits::lowest(),
-                          " to ",
-                          Limits::max()));
+        const bool inside = row[x] >= Limits::lowest() && row[x] <= Limits::max();
+        *label = inside ? static_cast<LabelImage::PixelType>(row[x]) : LabelImage::PixelType{ 0 };
+        if (!inside || static_cast<float>(*label) != row[x])
+        {
+          CTImage::IndexType index = it.GetIndex();
+          index[0] += static_cast<itk::IndexValueType>(x);
+          this->ThrowNoLabel(index);
+        }
       }
-      *label = static_cast<LabelImage::PixelType>(value);
     }
   }
 
 private:
+  using Limits = std::numeric_limits<LabelImage::PixelType>;
+
+  [[noreturn]] void
+  ThrowNoLabel(const CTImage::IndexType & index) const
+  {
+    RequireFinite(this->GetInput(), m_Path);
+    throw IOError(m_Path,
+                  Say("is no label map: its value at ",
+                      index,
+                      " is ",
+                      this->GetInput()->GetPixel(index),
+                      ", no whole number from ",
+                      Limits::lowest(),
+                      " to ",
+                      Limits::max()));
+  }
+
   std::string           m_Path;
   VolumeSource::Pointer m_Source;
 };
