@@ -31,6 +31,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = os.environ["BONETK_BUILD"]
+LANGUAGES = ("sh", "python", "cpp", "cmake", "json", "text")
 COMMENTS = ("not run", "given", "before")
 Block = collections.namedtuple("Block", "page line language text comments")
 
@@ -49,6 +50,7 @@ def blocks_of(page, text):
         for name, value in re.findall(r"<!-- ([a-z ]+):\s(.*?)\s?-->", match[1], re.DOTALL):
             assert name in COMMENTS, f"{page}: a comment says {name}, which is none of {COMMENTS}"
             comments[name] = value
+        assert match[2] in LANGUAGES, f"{page}: a block of {match[2] or 'no language'}, which is none of {LANGUAGES}"
         found.append(Block(page, text[: match.start(3)].count("\n") + 1, match[2], match[3], comments))
     ticks = len(re.findall(r"^\s*```", text, re.MULTILINE))
     assert ticks == 2 * len(found), f"{page}: {ticks} lines of ``` make no {ticks / 2} blocks"
@@ -198,6 +200,8 @@ target_link_libraries(parts PRIVATE BoneTK::Phantom BoneTK::Evaluation BoneTK::R
                      "<!-- before: false -->\n```text\n```\n", "<!-- skipped: no reason -->\n```sh\ntrue\n```\n", "```sh\ntrue\n"):
             with self.assertRaises((AssertionError, ValueError), msg=text):
                 self.run_block(folder, block(text))
+        with self.assertRaises(AssertionError):
+            block("<!-- not run: it is not a language -->\n```bash\nls\n```\n")
         self.run_block(folder, block("<!-- not run: it fails -->\n```sh\nfalse\n```\n"))
         self.run_block(folder, block("<!-- before: touch made -->\n```sh\nls made\n```\n"))
         self.run_block(folder, block("```cpp\n// never.cxx\nint main() {}\n```\n"))
@@ -205,4 +209,4 @@ target_link_libraries(parts PRIVATE BoneTK::Phantom BoneTK::Evaluation BoneTK::R
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], "-v"])
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[1:]])
