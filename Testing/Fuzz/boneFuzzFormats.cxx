@@ -127,7 +127,8 @@ void
 UseLabels(const std::string & path)
 {
   const LabelFile file = ReadLabelFile(path);
-  const auto      labels = CountLabels(file);
+  CountLabels(OpenLabelFile(path));
+  const auto labels = CountLabels(file);
   if (!labels.empty())
   {
     ChooseBones(file, { labels[0].name.empty() ? std::to_string(labels[0].value) : labels[0].name });
@@ -145,6 +146,13 @@ UseParameters(const std::string & path)
 void
 UseImage(const std::string & path)
 {
+  const auto          source = OpenCT(path);
+  CTImage *           ct = source->GetOutput();
+  CTImage::RegionType last = ct->GetLargestPossibleRegion();
+  last.SetIndex(2, last.GetUpperIndex()[2]);
+  last.SetSize(2, 1);
+  ct->SetRequestedRegion(last);
+  ct->Update();
   ReadCT(path);
 }
 

@@ -230,6 +230,10 @@ TEST(LabelCrop, ABoneReadByRegionsIsThatOfTheWholeImages)
     plan.label = std::stoi(label);
     const auto extent = bone::MeasureLabel(whole.layers.front(), plan.label);
     EXPECT_EQ(bone.region, extent.region);
+    for (const bone::LabelCount & count : bone::CountLabels(opened.layers.front()))
+    {
+      EXPECT_TRUE(count.value != plan.label || count.voxels == extent.voxels) << count.voxels;
+    }
     const auto expected = bone::CropToBone(wholeCT, whole.layers.front(), nullptr, plan);
     const auto input = bone::CropToBone(source->GetOutput(), bone, nullptr, plan);
     EXPECT_LT(source->GetOutput()->GetBufferedRegion().GetNumberOfPixels(), 1000000u);

@@ -33,7 +33,6 @@ struct NiftiHeader
   bool        swapped{ false };
   bool        single{ false }; // header and data in one file
   bool        analyze{ true }; // no NIfTI file, but one of Analyze 7.5
-  bool        placed{ false }; // by qform or sform
   int         datatype{ 0 };
   std::size_t voxels{ 1 };
   std::size_t bytes{ 0 };
@@ -66,8 +65,6 @@ ReadNiftiHeader(const std::string & path)
   header.offset = static_cast<std::size_t>(std::max(0.0f, Decode<float>(&raw[108], header.swapped)));
   header.slope = Decode<float>(&raw[112], header.swapped);
   header.intercept = Decode<float>(&raw[116], header.swapped);
-  header.placed =
-    Decode<std::int16_t>(&raw[252], header.swapped) > 0 || Decode<std::int16_t>(&raw[254], header.swapped) > 0;
   header.single = std::memcmp(&raw[344], "n+1", 3) == 0;
   header.analyze = !header.single && std::memcmp(&raw[344], "ni1", 3) != 0;
   return header;
@@ -135,12 +132,10 @@ SetScale(const NiftiHeader & header, const itk::ImageIOBase * io, ImageVoxels & 
   using Type = itk::IOComponentEnum;
   voxels.slope = std::abs(header.slope) < epsilon ? 1.0 : header.slope;
   voxels.intercept = header.intercept;
-  const bool scale = std::abs(voxels.slope - 1.0) > epsilon || std::abs(voxels.intercept) > epsilon;
-  const Type type = voxels.component;
-  const bool whole = type != Type::FLOAT && type != Type::DOUBLE;
-  voxels.rescaled = whole ? io->GetComponentType() == Type::FLOAT : scale;
-  voxels.plain = voxels.plain && (whole ? !voxels.rescaled || scale : io->GetComponentType() == type) &&
-                 (whole || !scale || header.placed);
+  voxels.rescaled = std::abs(voxels.slope - 1.0) > epsilon || std::abs(voxels.intercept) > epsilon;
+  const Type type = io->GetComponentType();
+  const bool whole = voxels.component != Type::FLOAT && voxels.component != Type::DOUBLE;
+  voxels.plain = voxels.plain && (whole ? (type == Type::FLOAT) == voxels.rescaled : type == voxels.component);
 }
 
 ImageVoxels
