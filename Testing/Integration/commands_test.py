@@ -3,11 +3,12 @@
 import json
 import os
 import re
+import subprocess
 
 import numpy
 import nibabel
 
-from bonetk_testing import EXAMPLES, TestCase, bonetk, main, phantom, read_json, run, write_json
+from bonetk_testing import BONETK, EXAMPLES, TestCase, bonetk, main, phantom, read_json, run, write_json
 
 GEOMETRY = {"source": [20, -900, -60], "detectorOrigin": [-100, 200, 80], "detectorU": [1, 0, 0],
             "detectorV": [0, 0, -1], "size": [64, 80], "spacing": [4, 4]}
@@ -247,6 +248,35 @@ class Commands(TestCase):
         with open("missing.txt", "w") as file:
             file.write("m0.vtu\nnone.vtu\n")
         self.refuse("train", "missing.txt", "--quiet", "-o", "x.h5", says="none.vtu")
+
+    def test_cost(self):
+        def cost(*arguments):
+            """Seconds and MB that a build is said to take."""
+            out, _ = self.succeed("info", "ct.nii.gz", "--cost", *arguments)
+            return [int(re.search(what + r" +(\d+)\n", out)[1]) for what in ("seconds, about", r"memory, about \(MB\)")]
+
+        phantom()
+        small = ("--labels", "l.nii.gz", "--tetrahedra", 3000)
+        process = subprocess.Popen([BONETK, "build", "ct.nii.gz", *map(str, small), "--degree", "1", "--no-page", "-q", "-o", "m"],
+                                   stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        seconds, megabytes = cost(*small, "--threads", 1)
+        self.assertLess(abs(megabytes / (usage.ru_maxrss * 1024 / 1e6) - 1), 0.2)
+        self.assertLess(cost(*small, "--threads", 4)[0], seconds)
+        self.assertGreater(min(a / b for a, b in zip(cost("--threads", 1, "--tetrahedra", 100000), (seconds, megabytes))), 3)
+        twice = cost(*small, "--label", "1,2", "--threads", 1)
+        self.assertAlmostEqual(twice[0], 2 * seconds, delta=3)
+        self.assertLessEqual(twice[1], megabytes)
+        # The header is enough.
+        with open("ct.nii.gz", "rb") as file:
+            head = file.read(20000)
+        with open("ct.nii.gz", "wb") as file:
+            file.write(head)
+        self.assertEqual(cost(*small, "--threads", 1), [seconds, megabytes])
+        self.refuse("info", "l.nii.gz", "--tetrahedra", 3000, code=2, says="--cost")
+        self.refuse("info", "ct.nii.gz", "--cost", "--labels", "l.nii.gz", "--label", 9, says="label 9")
 
     def test_quiet(self):
         self.assertEqual(self.succeed("phantom", "--quiet", "--spacing", 4, "-o", "ct.nii.gz"), ("", ""))

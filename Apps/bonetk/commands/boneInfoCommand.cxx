@@ -4,16 +4,23 @@
 #include "boneCommands.h"
 #include "boneDescribe.h"
 #include "boneInputOptions.h"
+#include "boneParameterOptions.h"
 
+#include "boneBuildCost.h"
 #include "boneContourIO.h"
 #include "boneFileName.h"
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
+#include "boneLabelCrop.h"
 #include "boneMeshIO.h"
 #include "boneModelIO.h"
 
+#include <itkMultiThreaderBase.h>
+
+#include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 
 namespace bone
@@ -114,6 +121,69 @@ Describe(const std::string & path, const std::string & series, Session & session
     }
   }
 }
+
+/** What of a build is said before it is made. */
+struct CostOptions
+{
+  bool            wanted{ false };
+  LabelOptions    labels;
+  BuildParameters parameters;
+};
+
+double
+CountVoxels(const CTImage::SizeType & size)
+{
+  return static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
+}
+
+/** Of each bone's box in the label map, with its margin. */
+std::vector<double>
+CountVoxelsOfBones(const CostOptions & options, Session & session)
+{
+  std::vector<double> voxels;
+  for (const LabelledBone & bone : ReadBoneLabels(options.labels, nullptr, session, true))
+  {
+    // Where the label map is read by regions, its voxels are not there, but the box is known.
+    const auto region =
+      bone.region.GetNumberOfPixels() > 0 ? bone.region : MeasureLabel(bone.labels, bone.label).region;
+    const auto grown = GrowRegion(bone.labels, region, options.parameters.plan.cropMargin);
+    voxels.push_back(CountVoxels(grown.GetSize()));
+  }
+  return voxels;
+}
+
+std::string
+DescribeCost(const std::string & path, const std::string & series, const CostOptions & options, Session & session)
+{
+  BuildSize size;
+  size.voxels = CountVoxels(ReadVolumeSize(path, series));
+  size.bones = options.labels.file.empty() ? std::vector<double>{ size.voxels } : CountVoxelsOfBones(options, session);
+  size.threads = itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads();
+  const BuildCost    cost = EstimateCost(size, options.parameters);
+  std::ostringstream os;
+  os << "kind                        build of " << path << "\nvoxels                      " << std::llround(size.voxels)
+     << "\nbones                       " << size.bones.size() << "\nvoxels of their boxes       "
+     << std::llround(std::accumulate(size.bones.begin(), size.bones.end(), 0.0)) << "\ntetrahedra of each          "
+     << options.parameters.plan.tetrahedra << "\nthreads                     " << size.threads
+     << "\nseconds, about              " << std::llround(std::ceil(cost.seconds)) << "\nmemory, about (MB)          "
+     << std::llround(std::ceil(cost.megabytes)) << '\n';
+  return os.str();
+}
+
+void
+AddCostOptions(CLI::App * command, CostOptions & options)
+{
+  auto * cost = command->add_flag(
+    "--cost", options.wanted, "Of a CT, by its header: how many seconds and how much memory its build takes, about");
+  options.labels.AddTo(command, "Label map of the build, for --cost; default: the bone fills the CT", true)
+    ->needs(cost);
+  AddParameterOptions(command, options.parameters.plan, { "tetrahedra" });
+  AddParameterOptions(command, options.parameters.fit, { "degree" });
+  for (const char * name : { "--tetrahedra", "--degree" })
+  {
+    command->get_option(name)->needs(cost);
+  }
+}
 } // namespace
 
 void
@@ -121,12 +191,16 @@ AddInfoCommand(CLI::App & app, Action & action)
 {
   auto   path = std::make_shared<std::string>();
   auto   series = std::make_shared<std::string>();
+  auto   cost = std::make_shared<CostOptions>();
   auto * command = app.add_subcommand("info", "Say what is in a file, or in a folder with a DICOM series");
   command->add_option("file", *path, "Mesh, contours, hierarchy, X-ray views, statistical model, surface or image")
     ->required();
   AddSeriesOption(command, *series);
-  command->callback([path, series, &action] {
-    action = [path, series](Session & session) { session.Print(Describe(*path, *series, session)); };
+  AddCostOptions(command, *cost);
+  command->callback([path, series, cost, &action] {
+    action = [path, series, cost](Session & session) {
+      session.Print(cost->wanted ? DescribeCost(*path, *series, *cost, session) : Describe(*path, *series, session));
+    };
   });
 }
 } // namespace bone

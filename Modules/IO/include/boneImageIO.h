@@ -64,6 +64,10 @@ ReadLabels(const std::string & path);
 CTImage::Pointer
 ReadRadiograph(const std::string & path);
 
+/** How many voxels a volume has along each axis, from its header alone. `series` is as in ReadCT. */
+CTImage::SizeType
+ReadVolumeSize(const std::string & path, const std::string & series = "");
+
 /** Whether a volume's voxels lie, or may lie, in another file than the one named. */
 bool
 HasDetachedVoxels(const std::string & path);

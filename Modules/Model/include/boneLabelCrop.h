@@ -75,7 +75,7 @@ MeasureLabel(const LabelImage * labels, int label);
 
 /** The region grown by a margin (mm) on every side, as far as the image goes. */
 CTImage::RegionType
-GrowRegion(const CTImage * image, const CTImage::RegionType & region, double margin);
+GrowRegion(const itk::ImageBase<3> * image, const CTImage::RegionType & region, double margin);
 
 CTImage::Pointer
 Crop(const CTImage * image, const CTImage::RegionType & region);

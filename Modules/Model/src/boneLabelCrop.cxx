@@ -356,7 +356,7 @@ MeasureLabel(const LabelImage * labels, int label)
 }
 
 CTImage::RegionType
-GrowRegion(const CTImage * image, const CTImage::RegionType & region, double margin)
+GrowRegion(const itk::ImageBase<3> * image, const CTImage::RegionType & region, double margin)
 {
   CTImage::RegionType grown = region;
   CTImage::SizeType   radius;

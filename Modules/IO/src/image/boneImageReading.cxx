@@ -2,6 +2,7 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 #include "boneDicomFile.h"
+#include "boneDicomSeries.h"
 #include "boneImageCheck.h"
 #include "boneImageFile.h"
 #include "boneImageHeader.h"
@@ -346,6 +347,31 @@ OpenCT(const std::string & path, const std::string & series, std::vector<std::st
   RequireFinite(source->GetOutput(), path); // of what is read by now
   RequireSensibleGrid(source->GetOutput(), path);
   return source;
+}
+
+CTImage::SizeType
+ReadVolumeSize(const std::string & path, const std::string & series)
+{
+  const QuietItk    quiet;
+  CTImage::SizeType size{};
+  if (std::filesystem::is_directory(path))
+  {
+    std::vector<std::string> notes;
+    const DicomSeries        slices = FindDicomSeries(path, series, notes);
+    const DicomHeader &      first = slices.front();
+    size[0] = static_cast<itk::SizeValueType>(first.columns);
+    size[1] = static_cast<itk::SizeValueType>(first.rows);
+    size[2] = slices.size() * static_cast<itk::SizeValueType>(first.frames);
+    return size;
+  }
+  const auto io = OpenImage(path);
+  RequireOneComponent(path, io);
+  RequireVolume(path, io);
+  for (unsigned int d = 0; d < 3; ++d)
+  {
+    size[d] = io->GetDimensions(d);
+  }
+  return size;
 }
 
 CTImage::Pointer
