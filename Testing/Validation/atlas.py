@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The atlas on real shapes and on phantoms whose factors are known.
 
-    BONETK_DATA=... Testing/Validation/atlas.py BUILD_FOLDER [--scratch FOLDER] [--only registration|population|memory]
+    BONETK_DATA=... Testing/Validation/atlas.py BUILD_FOLDER [--scratch FOLDER] [--only registration|population]
 
 makes the standard models with bonetk, registers them to the surfaces in BONETK_DATA/femur_shapes (each in a random pose, its
 vertices shuffled) and to models of scanned phantom hemipelves, trains, and writes Documentation/validation/atlas.md. With --only the other
@@ -58,9 +58,6 @@ class Validation:
 
     def population(self):
         self.rows("population", "population", self.standard("hemipelvis", ["--bone", "hemipelvis"], "z", 30000), 30, 1)
-
-    def memory(self):
-        self.rows("memory", "memory", self.scratch / "femur" / "model_L1.vtu", 1000)
 
 
 def read(scratch, name):
@@ -146,17 +143,11 @@ def population_section(scratch):
     return out
 
 
-def memory_section(scratch):
-    return [f"\n## Size\n\n{r['subjects']} subjects of {r['tetrahedra']} cells of degree 2 ({r['coefficients']} coefficients): "
-            f"{r['gigabytes']:.2f} GB at most, {r['seconds']:.0f} processor seconds; {r['shapeModes']} modes of shape and "
-            f"{r['densityModes']} of density for 98 % of the variance." for r in read(scratch, "memory")]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--scratch", type=pathlib.Path)
-    parser.add_argument("--only", choices=["registration", "population", "memory", "none"])
+    parser.add_argument("--only", choices=["registration", "population", "none"])
     options = parser.parse_args()
     scratch = options.scratch or pathlib.Path(tempfile.mkdtemp())
     scratch.mkdir(exist_ok=True)
@@ -165,10 +156,8 @@ def main():
         validation.registration(os.environ["BONETK_DATA"])
     if options.only in (None, "population"):
         validation.population()
-    if options.only in (None, "memory"):
-        validation.memory()
     out = ["# Atlas\n", made_by(__file__) + ".\n"]
-    out += registration_section(scratch) + population_section(scratch) + memory_section(scratch)
+    out += registration_section(scratch) + population_section(scratch)
     REPORT.write_text("\n".join(out) + "\n")
     print("\n".join(out))
 

@@ -12,9 +12,10 @@ import json
 import math
 import os
 import pathlib
-import re
 import subprocess
 import tempfile
+
+from report import made_by
 
 HERE = pathlib.Path(__file__).resolve()
 REPORT = HERE.parents[2] / "Documentation" / "validation" / "atlas_scale.md"
@@ -94,12 +95,6 @@ def comparison(name, c):
     return "| " + " | ".join(cells) + " |"
 
 
-def machine():
-    with open("/proc/cpuinfo") as file:
-        names = re.findall(r"model name\s*: (.*)", file.read())
-    return f"{names[0]}, {os.cpu_count()} processors"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
@@ -128,11 +123,10 @@ def main():
     scale.train("joined2.h5", "--from", added, "--modes", 60, "--add", scratch / "small.h5")
     exponent = math.log(times[most]["cpu"] / times[counts[-2]]["cpu"]) / math.log(most / counts[-2]) if len(counts) > 1 else 1
     lines = scale.run(scale.bonetk, "info", scratch / f"{most}.h5").splitlines()
-    commit = scale.run("git", "-C", HERE.parents[2], "rev-parse", "--short", "HEAD").strip()
     cells = next(line.split()[-1] for line in lines if line.startswith("tetrahedra"))
     REPORT.write_text(f"""# Atlases of thousands of subjects
 
-Made by `Testing/Validation/atlas_scale.py` at commit {commit} on {machine()}.
+{made_by(__file__)}.
 
 Femora of {cells} cells, degree 2, drawn from an atlas of twelve phantoms, each with {NOISE} HU of noise of its own in every coefficient, as
 files. `bonetk train --from FOLDER`, with its defaults: 98 % of the variance, 1024 MB of memory for subjects and modes.
