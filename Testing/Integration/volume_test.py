@@ -30,7 +30,7 @@ class Volume(TestCase):
         os.chdir(cls.common.name)
         try:
             phantom("--bone", "femur", ct="femur.nii.gz", every=2)
-            phantom("--bone", "hemipelvis", "--spacing", 2, "--noise", 20)
+            phantom("--bone", "hemipelvis", "--noise", 20, every=2)
             for command in (["contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 6, "--contour-spacing", 8, "-o",
                              "c.vtp"],
                             ["mesh", "c.vtp", "-o", "plain.vtu"],

@@ -40,7 +40,8 @@ struct VolumeRegistrationResult
   Eigen::VectorXd densityScores; ///< standard deviations of the modes of density; set by TakeVolumeDensity
   /** In the CT's space, with the density of the atlas' mean. The topology is the atlas', or that of ReflectMesh. */
   MeshArrays mesh;
-  double     settled{ 0.0 }; ///< mean motion of the surface's points in the last step, mm
+  double     settled{ 0.0 };  ///< mean motion of the surface's points in the last step, mm
+  double settledShare{ 0.0 }; ///< of that step that was taken: less than 1 where more would invert tetrahedra for good
 
   /** Of the six steps of RigidPose::Moved from `pose`, then of the coefficients. */
   Eigen::MatrixXd      covariance;

@@ -256,6 +256,7 @@ ReportRegistration(const VolumeRegistrationResult & result)
   report["support"] = support(result.support);
   report["settledSupport"] = support(result.settledSupport);
   report["settledMm"] = result.settled;
+  report["settledShare"] = result.settledShare;
   report["repaired"] = result.repaired;
   report["shape"] = list(result.coefficients.head(result.shapeModes));
   report["smooth"] = list(result.coefficients.tail(result.smoothModes));

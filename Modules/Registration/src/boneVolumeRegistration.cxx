@@ -139,7 +139,8 @@ DeviationsOfPoints(const VolumeRegistrationResult & result, const DeformableMode
   return deviations;
 }
 
-/** The mesh whose surface has settled on the edges; sets what the result says of it. */
+/** The mesh whose surface has settled on the edges; sets what the result says of it. Where that inverts tetrahedra that
+ * cannot be repaired, the surface goes less far. */
 void
 Settle(const FoundBone &          found,
        const DeformableModel &    model,
@@ -147,14 +148,13 @@ Settle(const FoundBone &          found,
        VolumeRegistrationResult & result,
        const Execution &          execution)
 {
-  result.mesh = model.mean;
-  if (result.mesh.neighbors.empty())
+  MeshArrays rest = model.mean;
+  if (rest.neighbors.empty())
   {
-    result.mesh.neighbors = ComputeFaceNeighbors(result.mesh.tetrahedra);
+    rest.neighbors = ComputeFaceNeighbors(rest.tetrahedra);
   }
-  const MeshArrays rest = result.mesh;
-  result.mesh.points = model.MovePoints(found.state.coefficients);
-  for (Vector3 & x : result.mesh.points)
+  std::vector<Vector3> points = model.MovePoints(found.state.coefficients);
+  for (Vector3 & x : points)
   {
     x = found.state.pose.Apply(x);
   }
@@ -167,20 +167,33 @@ Settle(const FoundBone &          found,
   std::vector<Vector3> moved;
   for (std::size_t i = 0; i < surface.size(); ++i)
   {
-    const Vector3 offset = surface[i] - before[i];
-    result.settled += offset.norm() / static_cast<double>(surface.size());
-    moved.push_back(rest.points[static_cast<std::size_t>(fit.Exterior()[i])] + offset);
+    moved.push_back(rest.points[static_cast<std::size_t>(fit.Exterior()[i])] + surface[i] - before[i]);
   }
   const std::vector<Vector3> followed =
     InteriorDeformation(rest, fit.Exterior()).Deform(InteriorRule::Harmonic, AffineMap(), moved, execution);
-  for (std::size_t p = 0; p < followed.size(); ++p)
+  const AffineMap alignment{ found.state.pose.rotation, found.state.pose.Apply(Vector3::Zero()) };
+  result.mesh = rest;
+  for (const double share : { 1.0, 0.75, 0.5, 0.25, 0.0 })
   {
-    result.mesh.points[p] += followed[p] - rest.points[p];
+    for (std::size_t p = 0; p < followed.size(); ++p)
+    {
+      result.mesh.points[p] = points[p] + share * (followed[p] - rest.points[p]);
+    }
+    const UntanglingReport report = UntangleMesh(rest, fit.Exterior(), alignment, result.mesh.points, {}, execution);
+    result.repaired = report.before - report.after;
+    result.inverted = report.after;
+    result.settledShare = share;
+    if (result.inverted == 0)
+    {
+      break;
+    }
   }
-  const AffineMap        alignment{ found.state.pose.rotation, found.state.pose.Apply(Vector3::Zero()) };
-  const UntanglingReport report = UntangleMesh(rest, fit.Exterior(), alignment, result.mesh.points, {}, execution);
-  result.repaired = report.before - report.after;
-  result.inverted = report.after;
+  for (std::size_t i = 0; i < surface.size(); ++i)
+  {
+    const Vector3 offset = result.settledShare * (surface[i] - before[i]);
+    surface[i] = before[i] + offset;
+    result.settled += offset.norm() / static_cast<double>(surface.size());
+  }
   result.settledSupport = fit.Judge(surface, execution, &result.unsupported);
 }
 
