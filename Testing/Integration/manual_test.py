@@ -92,7 +92,7 @@ class Manual(TestCase):
 
     def test_bash_completes(self):
         for words, expected in ((["bui"], ["build"]), (["build", "--deg"], ["--degree"]),
-                                (["register", ""], ["rigid", "deform", "volume", "--help"]),
+                                (["register", ""], ["rigid", "deform", "volume", "subject", "--help"]),
                                 (["register", "rigid", "m.vtu", "--display-cu"], ["--display-curve"]),
                                 (["register", "rigid", "--display-curve", ""], ["linear", "log"]),
                                 (["drr", "m.vtu", "--view", "left"], ["left-lateral"]),
@@ -103,7 +103,7 @@ class Manual(TestCase):
     def test_fish_completes(self):
         need("fish")
         for line, expected in (("bonetk bui", ["build"]), ("bonetk build --deg", ["--degree"]),
-                               ("bonetk register ", ["deform", "rigid", "volume"]),
+                               ("bonetk register ", ["deform", "rigid", "subject", "volume"]),
                                ("bonetk register rigid --display-curve ", ["linear", "log"]),
                                ("bonetk build --degree ", [])):
             code, out, err = run("fish", "--no-config", "-c", "source $argv[1]; complete -C $argv[2]",

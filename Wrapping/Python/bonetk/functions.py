@@ -219,10 +219,13 @@ def phantom(
 
 
 def train(
-    subjects: dict[str, DensityMesh] | Sequence[DensityMesh], *, progress: Progress | None = None, **parameters: Any
+    subjects: dict[str, DensityMesh] | Sequence[DensityMesh], *, atlas: StatisticalModel | None = None,
+    progress: Progress | None = None, **parameters: Any,
 ) -> StatisticalModel:
-    """An atlas of meshes of one topology. Parameters: StatisticalModelEstimator."""
+    """An atlas of meshes of one topology, or one with these added to it. Parameters: StatisticalModelEstimator."""
     f = _bonetk.StatisticalModelEstimator()
+    if atlas is not None:
+        f.atlas = atlas
     named = subjects if isinstance(subjects, dict) else {f"subject{i + 1}": mesh for i, mesh in enumerate(subjects)}
     for name, mesh in named.items():
         f.add_subject(name, mesh)

@@ -31,6 +31,10 @@ BindEstimator(py::module_ & m)
     py::arg("mesh"),
     "Adds a mesh of the subjects' topology.");
   estimator.def("remove_subjects", &EstimatorType::RemoveSubjects);
+  AddInput<StatisticalModel>(estimator,
+                             "atlas",
+                             BONE_PYTHON_INPUT(EstimatorType, Atlas),
+                             "StatisticalModel that the subjects are added to; none: they are all there are.");
   AddParameters(estimator);
   AddOutput(
     estimator, "output", [](EstimatorType & self) { return self.GetOutput(); }, "StatisticalModel.");

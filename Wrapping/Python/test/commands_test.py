@@ -63,6 +63,8 @@ CASES = [
     ("drr", ("bone.vtu",), dict(geometry="view.json", region="cortical", output="x.mha"),
      "bone.vtu --geometry view.json --region cortical -o x.mha"),
     ("train", ("list.txt",), dict(registered="meshes", no_page=True, output="atlas.h5"), "list.txt --registered meshes --no-page -o atlas.h5"),
+    ("register subject", ("s0.vtu", "bone.vtu"), dict(ct="ct.mha", degree=1, output="subject.vtu"),
+     "s0.vtu bone.vtu --ct ct.mha --degree 1 -o subject.vtu"),
     ("sample", ("atlas.h5",), dict(shape=["1=1", "2=-0.5"], density="1=1", output="sample.vtu"),
      "atlas.h5 --shape 1=1 2=-0.5 --density 1=1 -o sample.vtu"),
     ("evaluate", ("s0.vtu", "atlas.h5"), dict(mirror="never", no_page=True, output="e.json"), "s0.vtu atlas.h5 --mirror never --no-page -o e.json"),

@@ -320,6 +320,13 @@ class Others(unittest.TestCase):
         np.testing.assert_allclose(gram, gram[0, 0] * np.eye(len(gram)), atol=1e-6)
         self.assertFalse(model.shape_modes.flags.writeable)
         self.assertEqual(list(model.subjects), list(subjects))
+        names = list(subjects)
+        first = bonetk.train({name: subjects[name] for name in names[:4]}, variance_proportion=1.0)
+        both = bonetk.train({name: subjects[name] for name in names[4:]}, atlas=first)
+        self.assertEqual(list(both.subjects), names)
+        np.testing.assert_allclose(both.shape_variances, model.shape_variances, rtol=0.02)
+        with self.assertRaisesRegex(bonetk.Error, "in the atlas already"):
+            bonetk.train(subjects, atlas=first)
         np.testing.assert_allclose(model.synthesize().points, model.mean.points)
         made = model.synthesize([1.5]).points - model.mean.points
         wanted = 1.5 * np.sqrt(model.shape_variances[0]) * model.shape_modes[:, 0].reshape(-1, 3)
