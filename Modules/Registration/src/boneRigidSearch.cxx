@@ -169,7 +169,8 @@ public:
         best = result;
       }
       best.searches = search + 1;
-      if (best.quality == RegistrationQuality::Suspect && this->CountNear(best.pose, found) >= enough)
+      if (best.quality == RegistrationQuality::Suspect && !this->IsHeld(best.pose) &&
+          this->CountNear(best.pose, found) >= enough)
       {
         best.quality = RegistrationQuality::Ok;
       }
@@ -206,6 +207,15 @@ private:
     return pose;
   }
 
+  /** In the box's coordinates, before halves of its size. */
+  Vector6
+  StepInBox(const RigidPose & pose) const
+  {
+    Vector6 step = m_Initial.StepTo(pose);
+    step.head<3>() = pose.translation - m_Initial.translation;
+    return step;
+  }
+
   /** The pose in the box that is nearest to this one, by coordinates. */
   RigidPose
   Bound(const RigidPose & pose) const
@@ -214,10 +224,21 @@ private:
     {
       return pose;
     }
-    Vector6 step = m_Initial.StepTo(pose);
-    step.head<3>() = pose.translation - m_Initial.translation;
-    const Vector6 inside = step.cwiseMin(m_Box).cwiseMax(-m_Box);
+    const Vector6 step = this->StepInBox(pose), inside = step.cwiseMin(m_Box).cwiseMax(-m_Box);
     return inside == step ? pose : this->FromBox(inside.cwiseQuotient(m_Box.cwiseMax(1e-30)));
+  }
+
+  /** Whether the pose lies beyond what is to be searched, or where the box ends: the cost may fall on from there. */
+  bool
+  IsHeld(const RigidPose & pose) const
+  {
+    constexpr double within = 1.02; // of the translations that are to be searched
+    constexpr double end = 0.98;    // of the box's turns: steps towards its end are cut short
+    const Vector6    step = this->StepInBox(pose).cwiseAbs();
+    const auto       isBeyond = [&](Eigen::Index k) {
+      return m_Box[k] > 0.0 && step[k] > (k < 3 ? within * m_P.searchTranslation : end * m_Box[k]);
+    };
+    return m_IsSearched && (isBeyond(0) || isBeyond(1) || isBeyond(2) || isBeyond(3) || isBeyond(4) || isBeyond(5));
   }
 
   RigidPose
@@ -256,6 +277,10 @@ private:
       this->Descend(*m_Costs[s], result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
     }
     Judge(*m_Costs.back(), m_Radius, execution, result);
+    if (result.quality == RegistrationQuality::Ok && this->IsHeld(result.pose))
+    {
+      result.quality = RegistrationQuality::Suspect;
+    }
     return result;
   }
 
