@@ -125,6 +125,10 @@ RegisterSubjects(const TrainOptions & options, const std::string & folder, Sessi
     { { "registration", 10.0, static_cast<int>(subjects.size()) }, { "training", 2.0 }, { "writing", 1.0 } });
   session.Watch(population.GetFilter(), "registration");
   const bool         kept = !options.registered.empty();
+  if (kept)
+  {
+    session.kept.push_back(options.registered); // its record, and subjects of earlier runs
+  }
   RegistrationRecord record(folder);
   auto               set = FileTrainingSet::New();
   for (const SubjectFiles & subject : subjects)
