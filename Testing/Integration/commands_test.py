@@ -219,7 +219,8 @@ class Commands(TestCase):
         out, _ = self.succeed("train", "subjects.txt", "--degree", 1, "--variance", 1, "--registered", "meshes",
                               "--evaluation", "atlas.json", "--no-page", "-o", "atlas.h5")
         self.assertIn("shape modes                 2", out)
-        self.assertEqual(len([name for name in os.listdir("meshes") if name.endswith(".vtu")]), 3)
+        meshes = [name for name in os.listdir("meshes") if name.endswith(".vtu")]
+        self.assertEqual(len(meshes), 3)
         self.assertFalse(os.path.exists("atlas.html"))
         with open("atlas.json") as file:
             evaluation = json.load(file)
@@ -233,7 +234,7 @@ class Commands(TestCase):
         self.succeed("evaluate", "m1.vtu", "atlas.h5", "--ct", "ct1.nii.gz", "-o", "e.json")
         with open("e.html") as file:
             self.assertIn("<title>BoneTK report: m1.vtu</title>", file.read())
-        for mesh in os.listdir("meshes"):
+        for mesh in meshes:
             self.succeed("validate", "meshes/" + mesh)
         out, _ = self.succeed("info", "atlas.h5")
         self.assertIn("statistical model", out)

@@ -202,7 +202,7 @@ class Outputs(TestCase):
     def test_too_little_memory(self):
         limit = 1 << 30  # bytes of address space, of which the program's libraries take a part
         nibabel.save(nibabel.Nifti1Image(numpy.zeros((700, 700, 700), numpy.uint8), numpy.eye(4)), "big.nii.gz")
-        for command in (["phantom", "--spacing", 0.2, "-o", "p.nii"], ["build", "big.nii.gz", "--labels", "l.nii.gz", "-o", "out"]):
+        for command in (["phantom", "--spacing", 0.2, "-o", "p.nii"], ["drr", "big.nii.gz", "--view", "ap", "-o", "x.mha"]):
             self.refuse(*command, "-q", code=3, says="memory", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
 
 

@@ -161,7 +161,7 @@ UpdateReader(TReader * reader, const std::string & path, const itk::ImageIOBase 
   }
   catch (const itk::MemoryAllocationError &)
   {
-    throw IOError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
+    throw MachineError(path, "is damaged, or needs more memory than there is (" + SizeText(io) + " voxels)");
   }
   catch (const itk::ExceptionObject &)
   {
