@@ -312,6 +312,10 @@ ReadComponents(const std::string & path)
 void
 RequireFinite(const CTImage * image, const std::string & path)
 {
+  if (image->GetBufferedRegion().GetNumberOfPixels() == 0)
+  {
+    return; // an iterator needs a buffer
+  }
   std::size_t        count = 0;
   CTImage::IndexType first{};
   for (itk::ImageRegionConstIteratorWithIndex<CTImage> it(image, image->GetBufferedRegion()); !it.IsAtEnd(); ++it)

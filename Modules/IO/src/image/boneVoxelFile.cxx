@@ -87,7 +87,10 @@ VoxelFile::Enter(const Entry & entry)
 void
 VoxelFile::Fill()
 {
-  std::memmove(m_Input.data(), m_Stream.next_in, m_Stream.avail_in);
+  if (m_Stream.avail_in > 0) // before the first time there is no next_in
+  {
+    std::memmove(m_Input.data(), m_Stream.next_in, m_Stream.avail_in);
+  }
   m_File.read(&m_Input[m_Stream.avail_in], static_cast<std::streamsize>(m_Input.size() - m_Stream.avail_in));
   m_Stream.avail_in += static_cast<uInt>(m_File.gcount());
   m_InputEnd += static_cast<std::size_t>(m_File.gcount());
