@@ -14,7 +14,7 @@
 
 namespace bone
 {
-/** What a build is asked for, by which a repetition is known: the program (version and commit), its inputs by their
+/** What a command is asked for, by which a repetition is known: the program (version and commit), its inputs by their
  * checksums, and its options. inputs: role and path; those without a path are left out. Null where it cannot be known:
  * of a program from sources that differ from their commit, and where an input cannot be read, or its voxels lie in a
  * file beside it. */

@@ -5,6 +5,7 @@
 
 #include "boneFileName.h"
 #include "boneIOError.h"
+#include "boneParameterOptions.h"
 
 #include <algorithm>
 #include <cctype>
@@ -35,6 +36,14 @@ RecordOf(const std::string & folder)
   return folder + "/requests.jsonl";
 }
 } // namespace
+
+void
+SubjectRegistrationOptions::AddTo(CLI::App * command)
+{
+  command->add_option("--degree", degree, "Degree of densities that are fitted, 0 to 8; default 2")
+    ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
+  AddParameterOptions(command, parameters, { "mirror", "method", "interior", "exteriorBound" });
+}
 
 FileTrainingSet::Pointer
 ListRegistered(const std::string & folder)

@@ -7,6 +7,7 @@
 #include "boneModelIO.h"
 #include "bonePopulation.h"
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -14,6 +15,16 @@
 
 namespace bone
 {
+/** How subjects are brought onto a standard model: options of every command that does so. */
+struct SubjectRegistrationOptions
+{
+  int                         degree{ 2 };
+  AtlasRegistrationParameters parameters;
+
+  void
+  AddTo(CLI::App * command);
+};
+
 /** The meshes (.vtu) of a folder, by name; a subject's name is its file's, without extension and without four digits or
  * more and '_' before it. Throws IOError where there are none. */
 FileTrainingSet::Pointer

@@ -477,8 +477,8 @@ RunBuild(const BuildOptions & given, Session & session)
   const bool        atlas = !options.atlas.file.empty();
   session.Expect(
     { { "reading", 1.0 }, { "register", atlas ? 30.0 : 0.0 } }, 0.0, atlas ? shareOfAtlas : shareOfReading);
-  auto                   reading = std::make_unique<Session::Stage>(session, "reading");
-  Lap                    lap;
+  auto reading = std::make_unique<Session::Stage>(session, "reading");
+  Lap  lap;
   // Contours alone, and an atlas, need all of the CT.
   const bool            byRegion = !options.bone.labels.file.empty();
   VolumeSource::Pointer source;

@@ -234,7 +234,8 @@ RunRegisterRigid(const RegisterRigidOptions & options, Session & session)
 void
 AddRegisterCommand(CLI::App & app, Action & action)
 {
-  auto * group = app.add_subcommand("register", "Where a bone lies: a model or an atlas to X-rays, a CT or another bone");
+  auto * group =
+    app.add_subcommand("register", "Where a bone lies: a model or an atlas to X-rays, a CT or another bone");
   group->require_subcommand(1);
   auto   options = std::make_shared<RegisterRigidOptions>();
   auto * command = group->add_subcommand(

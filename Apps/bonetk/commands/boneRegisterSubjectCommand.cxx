@@ -3,7 +3,6 @@
  *=========================================================================*/
 #include "boneCommands.h"
 #include "boneOptions.h"
-#include "boneParameterOptions.h"
 #include "boneRegisteredSubjects.h"
 
 #include <filesystem>
@@ -14,11 +13,10 @@ namespace
 {
 struct RegisterSubjectOptions
 {
-  std::string                 standard;
-  SubjectFiles                subject;
-  int                         degree{ 2 };
-  AtlasRegistrationParameters registration;
-  std::string                 output;
+  std::string                standard;
+  SubjectFiles               subject;
+  SubjectRegistrationOptions registration;
+  std::string                output;
 };
 
 void
@@ -27,8 +25,8 @@ RunRegisterSubject(const RegisterSubjectOptions & options, Session & session)
   VerifyOutputs({ { options.output, { ".vtu" } } });
   SubjectFiles subject = options.subject;
   subject.name = std::filesystem::path(options.output).stem().string();
-  PopulationRegistration population(ReadStandard(options.standard), options.degree);
-  population.GetFilter()->SetParameters(options.registration);
+  PopulationRegistration population(ReadStandard(options.standard), options.registration.degree);
+  population.GetFilter()->SetParameters(options.registration.parameters);
   session.Expect({ { "registration", 10.0 }, { "writing", 1.0 } });
   session.Watch(population.GetFilter(), "registration");
   const MeshArrays mesh = BringSubject(population, subject);
@@ -54,9 +52,7 @@ AddRegisterSubjectCommand(CLI::App & group, Action & action)
   command->add_option("--ct",
                       options->subject.ct,
                       "CT that the density is fitted to; default: the density of the subject's mesh, if any");
-  command->add_option("--degree", options->degree, "Degree of densities that are fitted, 0 to 8; default 2")
-    ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
-  AddParameterOptions(command, options->registration, { "mirror", "method", "interior", "exteriorBound" });
+  options->registration.AddTo(command);
   command->add_option("-o,--output", options->output, "Mesh to write (.vtu), on the standard model's topology")
     ->required();
   command->callback(

@@ -30,18 +30,17 @@ namespace
 {
 struct TrainOptions
 {
-  std::string                 list;
-  std::string                 standard;
-  int                         degree{ 2 };
-  bool                        similarity{ false };
-  AtlasRegistrationParameters registration;
-  StatisticalModelParameters  model;
-  std::string                 registered;
-  std::string                 from;
-  std::string                 atlas;
-  std::string                 evaluation;
-  PageOption                  page;
-  std::string                 output;
+  std::string                list;
+  std::string                standard;
+  bool                       similarity{ false };
+  SubjectRegistrationOptions registration;
+  StatisticalModelParameters model;
+  std::string                registered;
+  std::string                from;
+  std::string                atlas;
+  std::string                evaluation;
+  PageOption                 page;
+  std::string                output;
 };
 
 /** Leave-one-out evaluation where it was asked for, or where it takes but seconds. */
@@ -71,7 +70,7 @@ WriteTrainingPage(const TrainOptions &     options,
 {
   std::vector<ParameterValue> parameters;
   AddParameters("training", options.model, parameters);
-  AddParameters("registration", options.registration, parameters);
+  AddParameters("registration", options.registration.parameters, parameters);
   ReportPage page = MakeAtlasPage(model, report, std::filesystem::path(options.output).filename().string());
   WritePage(page, options.page.NameOf(options.output), session, std::move(parameters), {});
 }
@@ -101,8 +100,8 @@ nlohmann::json
 RequestFor(const TrainOptions & options, const std::string & standard, const SubjectFiles & subject)
 {
   std::vector<ParameterValue> parameters;
-  AddParameters("registration", options.registration, parameters);
-  nlohmann::json asked{ { "degree", options.degree } };
+  AddParameters("registration", options.registration.parameters, parameters);
+  nlohmann::json asked{ { "degree", options.registration.degree } };
   for (const ParameterValue & parameter : parameters)
   {
     asked[parameter.name] = parameter.value;
@@ -118,13 +117,13 @@ RegisterSubjects(const TrainOptions & options, const std::string & folder, Sessi
 {
   const std::vector<SubjectFiles> subjects = ReadSubjectList(options.list, options.atlas.empty() ? 2 : 1);
   const std::string               standard = StandardOf(options, subjects);
-  PopulationRegistration          population(ReadStandard(standard), options.degree);
+  PopulationRegistration          population(ReadStandard(standard), options.registration.degree);
   VerifySubjects(subjects);
-  population.GetFilter()->SetParameters(options.registration);
+  population.GetFilter()->SetParameters(options.registration.parameters);
   session.Expect(
     { { "registration", 10.0, static_cast<int>(subjects.size()) }, { "training", 2.0 }, { "writing", 1.0 } });
   session.Watch(population.GetFilter(), "registration");
-  const bool         kept = !options.registered.empty();
+  const bool kept = !options.registered.empty();
   if (kept)
   {
     session.kept.push_back(options.registered); // its record, and subjects of earlier runs
@@ -277,8 +276,6 @@ AddTrainCommand(CLI::App & app, Action & action)
                       "Atlas (.h5) that the subjects are added to, without its own subjects: they are aligned to its "
                       "mean, which is the standard model too, and its product of densities stays");
   command->add_option("--standard", options->standard, "Standard model (.vtu); default: the list's first subject");
-  command->add_option("--degree", options->degree, "Degree of densities that are fitted, 0 to 8; default 2")
-    ->check(CLI::Range(0, MaximumBernsteinDegree).description(""));
   command->add_flag("--similarity", options->similarity, "Take size out of the shapes");
   AddParameterOptions(command,
                       options->model,
@@ -290,7 +287,7 @@ AddTrainCommand(CLI::App & app, Action & action)
                         "outlierThreshold",
                         "rejectOutliers",
                         "memory" });
-  AddParameterOptions(command, options->registration, { "mirror", "method", "interior", "exteriorBound" });
+  options->registration.AddTo(command);
   command->add_option(
     "--evaluation",
     options->evaluation,

@@ -15,7 +15,6 @@ namespace bone
 namespace
 {
 constexpr Eigen::Index LeastHeld = 32;
-constexpr Eigen::Index MostHeld = 1024;    // more cost time by the cube of their number
 constexpr Eigen::Index RowChunk = 1024;    // entries a thread works on
 constexpr Eigen::Index ColumnTile = 32;    // vectors of a block that a thread works on
 constexpr double       NoiseLevel = 1e-13; // of the largest eigenvalue
@@ -85,7 +84,7 @@ ModeAccumulator::ModeAccumulator(Eigen::Index      dimension,
   , m_Mean(Eigen::VectorXd::Zero(dimension))
 {
   const auto fitting = static_cast<Eigen::Index>(bytes / (sizeof(double) * static_cast<std::size_t>(dimension)));
-  const auto held = std::clamp(fitting, LeastHeld, std::max(LeastHeld, most > 0 ? most : MostHeld));
+  const auto held = std::clamp(fitting, LeastHeld, std::max(LeastHeld, most));
   m_Columns.resize(dimension, std::min(count, held) + 1);
 }
 

@@ -27,12 +27,12 @@ namespace bone
 class ModeAccumulator
 {
 public:
-  /** For `count` vectors of `dimension` entries, in `bytes` of memory: at least 32 vectors and at most `most` (0: 1024)
-   * are held. */
+  /** For `count` vectors of `dimension` entries, in `bytes` of memory: at least 32 vectors and at most `most` are held,
+   * as time grows with their number, in each renewal of the factor by its cube. */
   ModeAccumulator(Eigen::Index      dimension,
                   Eigen::Index      count,
                   std::size_t       bytes,
-                  Eigen::Index      most = 0,
+                  Eigen::Index      most,
                   const Execution & execution = {});
 
   /** Begins with `count` vectors of known mean, modes (orthonormal columns), variances, and sum of variances. */

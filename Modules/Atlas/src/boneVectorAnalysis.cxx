@@ -15,6 +15,7 @@ namespace bone
 namespace
 {
 constexpr Eigen::Index Batch = 32;            // vectors projected at once
+constexpr Eigen::Index MostModes = 512;       // that are found where no more are asked for, of as many vectors again
 constexpr double       RoundingLevel = 1e-11; // of the mean's length: what differs by less does not differ
 
 /** How many modes explain the proportion. `rounding`: of a variance. */
@@ -126,7 +127,7 @@ AnalyzeVectors(const VectorSource &       source,
   const VectorProduct product(result.weights, result.block);
   const Eigen::Index  held = source.count + (former.modes == nullptr ? 0 : former.modes->GetNumberOfModes() + 1);
   ModeAccumulator     found(
-    source.dimension, held, parameters.bytes, 2 * std::max<Eigen::Index>(512, parameters.maximumModes), execution);
+    source.dimension, held, parameters.bytes, 2 * std::max(MostModes, parameters.maximumModes), execution);
   if (former.modes != nullptr)
   {
     Eigen::MatrixXd modes = former.modes->modes;

@@ -24,9 +24,9 @@ struct VectorSource
 /** How many modes are kept, and the memory for it. */
 struct AnalysisParameters
 {
-  double       proportion{ 1.0 };             ///< of the variance that the kept modes explain, 0..1; 1: full rank
-  Eigen::Index maximumModes{ 0 };             ///< 0: no limit
-  std::size_t  bytes{ std::size_t(1) << 30 }; ///< for vectors and modes; see \ref ModeAccumulator
+  double       proportion{ 1.0 }; ///< of the variance that the kept modes explain, 0..1; 1: full rank
+  Eigen::Index maximumModes{ 0 }; ///< 0: no limit
+  std::size_t  bytes{ 0 };        ///< for vectors and modes; see \ref ModeAccumulator
 };
 
 /** Vectors that went before those of a source, known by their model; none by default. */

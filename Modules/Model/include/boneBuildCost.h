@@ -12,7 +12,7 @@ namespace bone
 struct BuildSize
 {
   double              voxels{ 0.0 }; ///< of the CT
-  std::vector<double> bones;         ///< voxels of each bone's box with its margin; those of the CT where they are not known
+  std::vector<double> bones; ///< voxels of each bone's box with its margin; those of the CT where they are not known
   unsigned int        threads{ 1 };
 };
 

@@ -23,8 +23,8 @@ struct SubjectFiles
 };
 
 /** Reads a list of subjects, one a line: the shape's file, and after a comma that of the CT where there is one. Names
- * are relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError, also where
- * there are fewer than `least`. */
+ * are relative to the list's folder; empty lines and those that begin with # are passed over. Throws IOError, also
+ * where there are fewer than `least`. */
 std::vector<SubjectFiles>
 ReadSubjectList(const std::string & path, std::size_t least = 2);
 

@@ -36,8 +36,8 @@ ReportRegistration(const DeformableRegistrationResult & result);
 /** The same of a registration to a CT, without `distinctness`, `cost` and `views`; with `mirrored` (whether the atlas
  * was reflected at x = 0 first), `support` (shares `visible` of the surface's points that the CT shows and `supported`
  * of these on an edge, median distance `residualMm`) before the surface settled, `settledSupport` after, `settledMm`
- * (mean motion), `settledShare` (of the way to the edges that it went), `repaired` (inverted tetrahedra made positive) and `unsupported`: parts of the surface without an
- * edge, each with `centre`, `extentMm` and `share`. */
+ * (mean motion), `settledShare` (of the way to the edges that it went), `repaired` (inverted tetrahedra made positive)
+ * and `unsupported`: parts of the surface without an edge, each with `centre`, `extentMm` and `share`. */
 nlohmann::json
 ReportRegistration(const VolumeRegistrationResult & result);
 

@@ -6,34 +6,31 @@
 #include "boneIOError.h"
 #include "boneImageFile.h"
 
+#include <itkByteSwapper.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 namespace bone
 {
 namespace
 {
-template <std::size_t VSize>
-void
-SwapBytes(char * bytes, std::size_t count)
-{
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    std::reverse(bytes + VSize * i, bytes + VSize * (i + 1));
-  }
-}
-
+/** From big-endian. */
 void
 SwapBytes(char * bytes, std::size_t count, std::size_t size)
 {
   switch (size)
   {
     case 2:
-      return SwapBytes<2>(bytes, count);
+      return itk::ByteSwapper<std::uint16_t>::SwapRangeFromSystemToBigEndian(reinterpret_cast<std::uint16_t *>(bytes),
+                                                                             count);
     case 4:
-      return SwapBytes<4>(bytes, count);
+      return itk::ByteSwapper<std::uint32_t>::SwapRangeFromSystemToBigEndian(reinterpret_cast<std::uint32_t *>(bytes),
+                                                                             count);
     case 8:
-      return SwapBytes<8>(bytes, count);
+      return itk::ByteSwapper<std::uint64_t>::SwapRangeFromSystemToBigEndian(reinterpret_cast<std::uint64_t *>(bytes),
+                                                                             count);
     default:
       return;
   }
