@@ -86,6 +86,16 @@ class Register(TestCase):
         with open("r.tfm") as one, open("single.tfm") as other:
             self.assertEqual(one.read(), other.read())
 
+    def test_a_pose_beyond_what_is_searched_is_not_trusted(self):
+        """Within the margin it is found all the same."""
+        with open("start.tfm", "w") as file:
+            file.write("#Insight Transform File V1.0\n#Transform 0\nTransform: Euler3DTransform_double_3_3\n"
+                       "Parameters: 0 0 0 0 0 9\nFixedParameters: 0 0 0 0\n")
+        for millimetres, quality in ((10, "ok"), (8, "suspect")):
+            self.succeed(*self.command, "--initial", "start.tfm", "--search", millimetres, 5, "--searches", 2, "--no-page", "-o", "b")
+            self.assertLess(self.error("b.json"), 1.0)
+            self.assertEqual(read_json("b.json")["quality"], quality)
+
     def test_the_example_program(self):
         code, out, err = run(os.path.join(EXAMPLES, "boneRigidRegistrationExample"), "m/model.hierarchy.json", "views.json",
                              "x_V1.mha", "x_V2.mha", "pose.tfm")

@@ -373,13 +373,20 @@ TEST(StatisticalModelEstimator, NamesOutliersAmongThoseAdded)
   {
     c += 2000;
   }
+  for (Vector3 & x : subjects[13].points)
+  {
+    x[0] += 0.1 * x[2] * x[2];
+  }
   const auto added = EstimateInTwoSteps(subjects, 11, [](Estimator * e) { e->RejectOutliersOn(); });
   ASSERT_EQ(added->GetSubjectDeviations().size(), 3u);
   EXPECT_FALSE(added->GetSubjectDeviations()[0].outlier);
   EXPECT_TRUE(added->GetSubjectDeviations()[1].outlier);
+  EXPECT_TRUE(added->GetSubjectDeviations()[2].outlier);
+  EXPECT_GT(added->GetSubjectDeviations()[2].shape, 3 * added->GetSubjectDeviations()[0].shape);
   const auto & names = added->GetOutput()->GetContent().subjects;
   EXPECT_EQ(std::count(names.begin(), names.end(), "subject 11"), 1);
   EXPECT_EQ(std::count(names.begin(), names.end(), "subject 12"), 0);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "subject 13"), 0);
 }
 
 TEST(StatisticalModelEstimator, RefusesToAddWhatDoesNotBelong)

@@ -44,10 +44,11 @@ struct RigidRegistrationResult
    * 0.28. One view does not always tell: wrong poses of a long bone have up to 1. */
   double distinctness{ 0.0 };
   int    searches{ 0 };
+  bool   beyondSearch{ false }; ///< the pose lies at the end of what was searched: `quality` is Suspect at best
 };
 
-/** \brief Sets cost, costs of the views, distinctness and quality of the pose that `result` has, for a model whose
- * radiographs are as in the last step of RegisterRigid. */
+/** \brief Sets cost, costs of the views, distinctness and quality of the pose that `result` has (and of beyondSearch),
+ * for a model whose radiographs are as in the last step of RegisterRigid. */
 void
 JudgePose(const MeshArrays &                  model,
           const std::vector<RadiographView> & views,

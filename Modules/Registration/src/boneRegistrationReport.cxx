@@ -203,6 +203,7 @@ ReportRegistration(const RigidRegistrationResult & result)
 {
   nlohmann::json report = ReportPose(result, result.covariance);
   report["searches"] = result.searches;
+  report["beyondSearch"] = result.beyondSearch;
   return report;
 }
 

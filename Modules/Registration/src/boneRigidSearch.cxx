@@ -87,6 +87,10 @@ Judge(const RigidCost & cost, double radius, const Execution & execution, RigidR
   result.quality = result.distinctness >= ofTrue    ? RegistrationQuality::Ok
                    : result.distinctness >= ofWrong ? RegistrationQuality::Suspect
                                                     : RegistrationQuality::Failed;
+  if (result.beyondSearch)
+  {
+    result.quality = std::max(result.quality, RegistrationQuality::Suspect);
+  }
 }
 
 /** A level made ready for radiographs. */
@@ -169,7 +173,7 @@ public:
         best = result;
       }
       best.searches = search + 1;
-      if (best.quality == RegistrationQuality::Suspect && !this->IsHeld(best.pose) &&
+      if (best.quality == RegistrationQuality::Suspect && !best.beyondSearch &&
           this->CountNear(best.pose, found) >= enough)
       {
         best.quality = RegistrationQuality::Ok;
@@ -230,7 +234,7 @@ private:
 
   /** Whether the pose lies beyond what is to be searched, or where the box ends: the cost may fall on from there. */
   bool
-  IsHeld(const RigidPose & pose) const
+  IsBeyondSearch(const RigidPose & pose) const
   {
     constexpr double within = 1.02; // of the translations that are to be searched
     constexpr double end = 0.98;    // of the box's turns: steps towards its end are cut short
@@ -276,11 +280,8 @@ private:
       const auto share = 1.0 / static_cast<double>(m_Costs.size());
       this->Descend(*m_Costs[s], result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
     }
+    result.beyondSearch = this->IsBeyondSearch(result.pose);
     Judge(*m_Costs.back(), m_Radius, execution, result);
-    if (result.quality == RegistrationQuality::Ok && this->IsHeld(result.pose))
-    {
-      result.quality = RegistrationQuality::Suspect;
-    }
     return result;
   }
 
