@@ -14,6 +14,7 @@ project=$(cd "$(dirname "$0")/../.." && pwd)
 population=$project/Examples/Population
 subjects=${1:-200}
 bonetk=$(command -v "${BONETK:-bonetk}") || { echo "$0: no program bonetk: set BONETK" >&2; exit 1; }
+bonetk=$(realpath "$bonetk")
 for program in munged slurmctld slurmd sbatch; do
   command -v $program > /dev/null || { echo "$0: $program is not installed" >&2; exit 77; }
 done

@@ -150,8 +150,8 @@ void
 WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline & pipeline, StagingFolder & staging)
 {
   const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
-  WriteContours(pipeline.GetMedialAxis()->GetOutput(), in("contours.vtp"));
-  WriteHierarchy(pipeline.GetCollapse()->GetOutput(), in("model"), report.parameters.storage);
+  WriteContours(pipeline.GetContours(), in("contours.vtp"));
+  WriteHierarchy(pipeline.GetHierarchy(), in("model"), report.parameters.storage);
   auto geometry = const_cast<XRayGeometry *>(pipeline.GetRadiograph(0)->GetGeometry());
   WriteGeometry({ geometry }, in("drr_geometry.json"));
   for (std::size_t level = 0; level < pipeline.GetNumberOfLevels(); ++level)

@@ -11,6 +11,7 @@
 #include "boneFileName.h"
 #include "boneContourImage.h"
 #include "boneLabelCrop.h"
+#include "bonePlacement.h"
 
 #include <algorithm>
 #include <sstream>
@@ -104,6 +105,12 @@ RunContours(const ContoursOptions & options, Session & session)
     session.Watch(filter, name);
   }
   BuildInput input{ ct, read.bone.labels, nullptr, read.contours, 0.0 };
+  if (input.labels)
+  {
+    input.labels = PutOnGrid(input.labels, ct);
+    input.mask = MaskOfLabel(input.labels, read.bone.label);
+    TurnToOwnOrientation(input);
+  }
   if (options.tetrahedra)
   {
     if (input.labels)
@@ -118,8 +125,8 @@ RunContours(const ContoursOptions & options, Session & session)
   {
     SetGivenResolution(options, parameters, input, pipeline);
   }
-  pipeline.GetMedialAxis()->Update();
-  const ContourStack * contours = pipeline.GetMedialAxis()->GetOutput();
+  pipeline.GetContours()->Update();
+  const ContourStack * contours = pipeline.GetContours();
   for (const auto & warnings : { pipeline.GetSnake()->GetWarnings(), pipeline.GetResample()->GetWarnings() })
   {
     std::for_each(warnings.begin(), warnings.end(), [&session](const std::string & line) { session.Warn(line); });
@@ -140,7 +147,7 @@ RunContours(const ContoursOptions & options, Session & session)
   }
   if (!options.allSlices.empty())
   {
-    WriteContours(pipeline.GetSnake()->GetOutput(), options.allSlices);
+    WriteContours(Place(*pipeline.GetSnake()->GetOutput(), PlacementOf(*input.ct)), options.allSlices);
   }
 }
 } // namespace

@@ -44,9 +44,23 @@ struct SliceReport
   std::string events;            ///< what happened, separated by semicolons; empty: nothing special
 };
 
+/** \brief How heights are told to a person: as the image's own where it was given in another place. */
+struct ToldHeight
+{
+  double sign{ 1.0 }; ///< -1: the slices are in the other order
+  double offset{ 0.0 };
+
+  double
+  operator()(double height) const
+  {
+    return sign * height + offset;
+  }
+};
+
 /** What happened on all slices, and what a person should know. */
 struct ExtractionReport
 {
+  ToldHeight               told; ///< in warnings and errors
   std::vector<SliceReport> slices;
   std::vector<std::string> warnings;
 };

@@ -7,6 +7,7 @@
 #include "boneContourExtraction.h"
 #include "boneContourFilter.h"
 #include "boneLabelValue.h"
+#include "bonePlacement.h"
 
 #include <itkImage.h>
 
@@ -76,6 +77,12 @@ public:
 
   BONE_FILTER_PARAMETERS(SnakeContourParameters, BONE_SNAKE_CONTOUR_PARAMETERS)
 
+  /** Where the image's space lies, where that is not where it says: warnings and errors then tell heights along the
+   * slices' normal that points forward (\ref PointsForward). */
+  void
+  SetPlacement(const Placement & placement);
+  itkGetConstReferenceMacro(Placement, Placement);
+
   /** After an update: what happened slice by slice, and what a person should know. */
   itkGetConstReferenceMacro(Report, ExtractionReport);
   const std::vector<std::string> &
@@ -114,7 +121,12 @@ private:
   LabelVoxels
   CropLabel(const SliceFrame & frame) const;
 
+  /** How heights along the frame's normal are told. */
+  ToldHeight
+  GetToldHeight(const SliceFrame & frame) const;
+
   ExtractionReport m_Report;
+  Placement        m_Placement;
 };
 } // namespace bone
 

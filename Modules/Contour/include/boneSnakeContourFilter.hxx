@@ -66,6 +66,30 @@ SnakeContourFilter<TInputImage, TLabelImage>::VerifyInputInformation() const
 }
 
 template <typename TInputImage, typename TLabelImage>
+void
+SnakeContourFilter<TInputImage, TLabelImage>::SetPlacement(const Placement & placement)
+{
+  if (placement != m_Placement)
+  {
+    m_Placement = placement;
+    this->Modified();
+  }
+}
+
+template <typename TInputImage, typename TLabelImage>
+ToldHeight
+SnakeContourFilter<TInputImage, TLabelImage>::GetToldHeight(const SliceFrame & frame) const
+{
+  if (m_Placement == Placement())
+  {
+    return {};
+  }
+  const Vector3 normal = m_Placement.direction * frame.normal;
+  const double  sign = PointsForward(normal) ? 1.0 : -1.0;
+  return { sign, sign * normal.dot(m_Placement.origin) };
+}
+
+template <typename TInputImage, typename TLabelImage>
 SliceFrame
 SnakeContourFilter<TInputImage, TLabelImage>::MakeFrame(std::array<unsigned int, 3> & axes) const
 {
@@ -226,8 +250,9 @@ SnakeContourFilter<TInputImage, TLabelImage>::GenerateData()
   const Execution             execution(this);
   std::array<unsigned int, 3> axes{};
   const SliceFrame            frame = this->MakeFrame(axes);
-  const bool                  labelled = this->GetLabelImage() != nullptr;
-  const LabelVoxels           label = labelled ? this->CropLabel(frame) : LabelVoxels();
+  m_Report.told = this->GetToldHeight(frame);
+  const bool        labelled = this->GetLabelImage() != nullptr;
+  const LabelVoxels label = labelled ? this->CropLabel(frame) : LabelVoxels();
   try
   {
     ExtractContours(frame,

@@ -82,6 +82,7 @@ void
 InsertInitialContours(const SliceFrame &           frame,
                       const ContourStack &         initial,
                       const ExtractionParameters & parameters,
+                      const ExtractionReport &     report,
                       std::vector<Section> &       sections)
 {
   if (!(std::abs(initial.GetNormal().dot(frame.normal)) > 1.0 - 1e-4))
@@ -118,7 +119,7 @@ InsertInitialContours(const SliceFrame &           frame,
     if (!loops.empty() && !(std::abs(section->height - height) <= step))
     {
       std::ostringstream text;
-      text << "An initial contour at " << height << " mm along axis " << parameters.axis
+      text << "An initial contour at " << report.told(height) << " mm along axis " << parameters.axis
            << " lies beyond the CT's slices.";
       throw std::runtime_error(text.str());
     }
@@ -146,9 +147,10 @@ SetOpenEnds(const SliceFrame &           frame,
   contours.SetOpenEnd(end);
   if (start || end)
   {
+    const bool first = report.told.sign > 0.0 ? start : end;
     report.warnings.push_back(std::string("The bone leaves the image at its ") +
                               (start && end ? "first and last"
-                               : start      ? "first"
+                               : first      ? "first"
                                             : "last") +
                               " slice; it is cut flat there.");
   }
@@ -188,7 +190,7 @@ ExtractContours(const SliceFrame &             frame,
   }
   if (initial != nullptr)
   {
-    InsertInitialContours(frame, *initial, parameters, sections);
+    InsertInitialContours(frame, *initial, parameters, report, sections);
   }
   execution.Report(0.4);
   const double brightest = BrightestWithin(sections, planes, parameters.boneThreshold);

@@ -134,7 +134,7 @@ MeanOf(const std::vector<Vector3> & points)
 Evaluation
 Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
 {
-  const auto & levels = pipeline.GetCollapse()->GetOutput()->GetLevels();
+  const auto & levels = pipeline.GetHierarchy()->GetLevels();
   const auto   finest = levels.front().mesh->GetArrays();
   Evaluation   evaluation;
 
@@ -186,7 +186,7 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
                        RoundInRange(percentiles[1] + 0.05 * range, range) };
   evaluation.degreeErrors = DegreeErrors(finest, evidence.ct, mask);
   evaluation.window = window;
-  evaluation.slices = DrawSlices(evidence.ct, pipeline.GetMedialAxis()->GetOutput(), window, unit, evidence.whole);
+  evaluation.slices = DrawSlices(evidence.ct, pipeline.GetContours(), window, unit, evidence.whole);
   Comparison comparison = CompareCut(cut, evidence.ct, std::move(cuts), window);
   comparison.scale = RoundInRange(0.25 * range, range);
   comparison.unit = unit;

@@ -131,8 +131,8 @@ MakeBuildPage(const BuildReport & report,
 {
   ReportPage page(NameOfBone(report.files), "build");
   page.SetWarnings(report.warnings);
-  const auto &            levels = pipeline.GetCollapse()->GetOutput()->GetLevels();
-  const ContourStack *    stack = pipeline.GetMedialAxis()->GetOutput();
+  const auto &            levels = pipeline.GetHierarchy()->GetLevels();
+  const ContourStack *    stack = pipeline.GetContours();
   std::vector<MeshArrays> meshes;
   for (const auto & level : levels)
   {

@@ -15,6 +15,7 @@
 #include "boneDensityFitFilter.h"
 #include "boneMedialAxisFilter.h"
 #include "boneMeshQualityFilter.h"
+#include "bonePlacementFilter.h"
 #include "boneSnakeContourFilter.h"
 #include "boneTetraCollapseFilter.h"
 
@@ -34,7 +35,10 @@ DescribeLosses(const TilingReport & report);
  * CT, labels or contours -> snake contours -> slices kept -> resampled contours -> medial axes -> tiling -> mesh
  * quality -> density fit
  * -> collapse -> one radiograph a level. Parameters are set on the stages; an update runs the stages whose input or
- * parameters changed and those after them, and no others. */
+ * parameters changed and those after them, and no others.
+ *
+ * The stages may work in a space of their own (\ref OnOwnGrid): SetPlacement says where that lies, and GetContours,
+ * GetHierarchy and the radiographs are in their place, while the outputs of the stages are not. */
 class BuildPipeline
 {
 public:
@@ -66,6 +70,9 @@ public:
   SetInitialContours(const ContourStack * contours);
   void
   SetGeometry(const XRayGeometry * geometry);
+  /** Where the space of images and contours lies; by default where they say. */
+  void
+  SetPlacement(const Placement & placement);
   /** \} */
 
   /** Sets the parameters of all stages; those of the plan are its own affair (\ref PlanBuild). */
@@ -138,6 +145,20 @@ public:
   GetStages() const;
   /** \} */
 
+  /** \name Results in their place; up to date after an update of theirs
+   * \{ */
+  ContourStack *
+  GetContours() const
+  {
+    return m_PlacedContours->GetOutput();
+  }
+  DensityHierarchy<> *
+  GetHierarchy() const
+  {
+    return m_PlacedHierarchy->GetOutput();
+  }
+  /** \} */
+
   /** Brings everything up to date. */
   void
   Update();
@@ -147,14 +168,18 @@ public:
   GetWarnings() const;
 
 private:
-  SnakeType::Pointer                         m_Snake{ SnakeType::New() };
-  SlicesType::Pointer                        m_Slices{ SlicesType::New() };
-  ResampleType::Pointer                      m_Resample{ ResampleType::New() };
-  MedialAxisType::Pointer                    m_MedialAxis{ MedialAxisType::New() };
-  TilingType::Pointer                        m_Tiling{ TilingType::New() };
-  QualityType::Pointer                       m_Quality{ QualityType::New() };
-  FitType::Pointer                           m_Fit{ FitType::New() };
-  CollapseType::Pointer                      m_Collapse{ CollapseType::New() };
+  SnakeType::Pointer      m_Snake{ SnakeType::New() };
+  SlicesType::Pointer     m_Slices{ SlicesType::New() };
+  ResampleType::Pointer   m_Resample{ ResampleType::New() };
+  MedialAxisType::Pointer m_MedialAxis{ MedialAxisType::New() };
+  TilingType::Pointer     m_Tiling{ TilingType::New() };
+  QualityType::Pointer    m_Quality{ QualityType::New() };
+  FitType::Pointer        m_Fit{ FitType::New() };
+  CollapseType::Pointer   m_Collapse{ CollapseType::New() };
+  using PlacedContoursType = PlacementFilter<ContourStack>;
+  using PlacedHierarchyType = PlacementFilter<DensityHierarchy<>>;
+  PlacedContoursType::Pointer                m_PlacedContours{ PlacedContoursType::New() };
+  PlacedHierarchyType::Pointer               m_PlacedHierarchy{ PlacedHierarchyType::New() };
   std::vector<HierarchyLevelFilter::Pointer> m_Levels;
   std::vector<RadiographType::Pointer>       m_Radiographs;
 };

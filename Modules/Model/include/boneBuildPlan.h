@@ -9,7 +9,8 @@
 
 namespace bone
 {
-/** What a build is made from: CT, and where the bone is. */
+/** What a build is made from: CT, and where the bone is. The order of voxels is the bone's own (\ref OwnOrientation).
+ */
 struct BuildInput
 {
   CTImage::Pointer      ct;
@@ -19,9 +20,13 @@ struct BuildInput
   double                surface{ 0.0 }; ///< of the label, mm^2; 0 without a label map
 };
 
-/** CT and label map cut down to the bone and the plan's margin; the CT as it is where `labels` is null. Throws
- * itk::ExceptionObject where the two have not the same grid, the label does not occur, or none of several labels is
- * chosen (\ref VerifyOneBone). */
+/** Puts the voxels of CT, label map and mask in the bone's own order; for inputs with a mask. */
+void
+TurnToOwnOrientation(BuildInput & input);
+
+/** CT and label map cut down to the bone and the plan's margin, in the bone's own orientation; the CT as it is where
+ * `labels` is null. Throws itk::ExceptionObject where the two have not the same grid, the label does not occur, or none
+ * of several labels is chosen (\ref VerifyOneBone). */
 BuildInput
 CropToBone(const CTImage *             ct,
            const LabelImage *          labels,
@@ -48,7 +53,8 @@ DrawOutlineToEdges(const itk::ImageBase<3> & ct, SnakeContourParameters & contou
 std::vector<IdType>
 CountTetrahedraOfLevels(const std::vector<double> & levels, IdType finest);
 
-/** Sets input and parameters on the pipeline, label, axis and distance bound of the stages as the plan has them. */
+/** Sets input and parameters on the pipeline, label, axis and distance bound of the stages as the plan has them. The
+ * stages work on the image's own grid (\ref OnOwnGrid). */
 void
 SetBuild(const BuildInput & input, const BuildParameters & parameters, BuildPipeline & pipeline);
 
@@ -73,7 +79,7 @@ XRayGeometry::Pointer
 LateralView(const BuildPipeline::MeshType * mesh);
 
 /** Sets the numbers of tetrahedra of the coarser levels on the collapse, as the plan says, and brings the pipeline up
- * to date. A null geometry is the front view of the tiling. */
+ * to date. A null geometry is the front view of the finest level. */
 void
 FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline);
 } // namespace bone

@@ -33,10 +33,12 @@ BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
   m_Quality->SetContours(m_Snake->GetOutput());
   m_Fit->SetMesh(m_Quality->GetOutput());
   m_Collapse->SetInput(m_Fit->GetOutput());
+  m_PlacedContours->SetInput(m_MedialAxis->GetOutput());
+  m_PlacedHierarchy->SetInput(m_Collapse->GetOutput());
   for (std::size_t level = 0; level < numberOfLevels; ++level)
   {
     m_Levels.push_back(HierarchyLevelFilter::New());
-    m_Levels.back()->SetInput(m_Collapse->GetOutput());
+    m_Levels.back()->SetInput(m_PlacedHierarchy->GetOutput());
     m_Levels.back()->SetLevel(level);
     m_Radiographs.push_back(RadiographType::New());
     m_Radiographs.back()->SetInput(m_Levels.back()->GetOutput());
@@ -71,6 +73,14 @@ BuildPipeline::SetGeometry(const XRayGeometry * geometry)
   {
     radiograph->SetGeometry(geometry);
   }
+}
+
+void
+BuildPipeline::SetPlacement(const Placement & placement)
+{
+  m_Snake->SetPlacement(placement);
+  m_PlacedContours->SetPlacement(placement);
+  m_PlacedHierarchy->SetPlacement(placement);
 }
 
 void
@@ -129,6 +139,7 @@ BuildPipeline::GetStages() const
 void
 BuildPipeline::Update()
 {
+  m_PlacedContours->Update();
   for (const auto & radiograph : m_Radiographs)
   {
     radiograph->Update();

@@ -4,6 +4,8 @@
 #include "boneBuildPlan.h"
 
 #include "boneLabelCrop.h"
+#include "boneOwnOrientation.h"
+#include "bonePlacement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,15 @@
 
 namespace bone
 {
+void
+TurnToOwnOrientation(BuildInput & input)
+{
+  const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
+  input.ct = Flip(input.ct, flips);
+  input.labels = Flip(input.labels, flips);
+  input.mask = Flip(input.mask, flips);
+}
+
 BuildInput
 CropToBone(const CTImage *             ct,
            const LabelImage *          labels,
@@ -32,6 +43,7 @@ CropToBone(const CTImage *             ct,
   input.ct = Crop(ct, region);
   input.labels = Crop(onGrid, region);
   input.mask = MaskOfLabel(input.labels, plan.label);
+  TurnToOwnOrientation(input);
   input.surface = extent.surface;
   return input;
 }
@@ -94,9 +106,11 @@ SetBuild(const BuildInput & input, const BuildParameters & parameters, BuildPipe
   stages.contours.axis = parameters.plan.axis;
   stages.quality.distanceBound = FindDistanceBound(*input.ct, parameters.plan);
   pipeline.SetParameters(stages);
-  pipeline.SetImage(input.ct);
-  pipeline.SetLabelImage(input.labels);
-  pipeline.SetInitialContours(input.contours);
+  const Placement placement = PlacementOf(*input.ct);
+  pipeline.SetPlacement(placement);
+  pipeline.SetImage(OnOwnGrid(input.ct));
+  pipeline.SetLabelImage(OnOwnGrid(input.labels));
+  pipeline.SetInitialContours(input.contours ? Place(*input.contours, placement.Inverse()) : nullptr);
 }
 
 Resolution
@@ -167,11 +181,11 @@ LateralView(const BuildPipeline::MeshType * mesh)
 void
 FinishBuild(const BuildPlanParameters & plan, const XRayGeometry * geometry, BuildPipeline & pipeline)
 {
-  pipeline.GetTiling()->Update();
-  pipeline.SetGeometry(geometry != nullptr ? geometry : FrontView(pipeline.GetTiling()->GetOutput()).GetPointer());
   pipeline.GetQuality()->Update();
   pipeline.GetCollapse()->SetLevels(
     CountTetrahedraOfLevels(plan.levels, pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra()));
+  pipeline.GetHierarchy()->Update();
+  pipeline.SetGeometry(geometry != nullptr ? geometry : FrontView(pipeline.GetHierarchy()->GetMesh(0)).GetPointer());
   pipeline.Update();
 }
 } // namespace bone

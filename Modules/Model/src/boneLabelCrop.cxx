@@ -312,7 +312,8 @@ MeasureLabel(const LabelImage * labels, int label)
   std::array<long, 3> upper{ { -1, -1, -1 } };
   BoneExtent          extent;
 
-  std::size_t k = 0;
+  std::array<std::size_t, 3> faces{ { 0, 0, 0 } };
+  std::size_t                k = 0;
   for (std::size_t z = 0; z < size[2]; ++z)
   {
     for (std::size_t y = 0; y < size[1]; ++y)
@@ -331,10 +332,9 @@ MeasureLabel(const LabelImage * labels, int label)
           upper[d] = std::max(upper[d], static_cast<long>(index[d]));
           const bool first = index[d] == 0;
           const bool last = index[d] + 1 == size[d];
-          const int  faces = (first || !IsLabel(buffer[k - strides[d]], label) ? 1 : 0) +
-                            (last || !IsLabel(buffer[k + strides[d]], label) ? 1 : 0);
+          faces[d] += first || !IsLabel(buffer[k - strides[d]], label) ? 1 : 0;
+          faces[d] += last || !IsLabel(buffer[k + strides[d]], label) ? 1 : 0;
           extent.leavesImage = extent.leavesImage || first || last;
-          extent.surface += faces * voxel / spacing[d] * 2.0 / 3.0;
         }
       }
     }
@@ -349,6 +349,7 @@ MeasureLabel(const LabelImage * labels, int label)
   extent.volume = static_cast<double>(extent.voxels) * voxel;
   for (int d = 0; d < 3; ++d)
   {
+    extent.surface += static_cast<double>(faces[d]) * voxel / spacing[d] * 2.0 / 3.0;
     extent.region.SetIndex(d, whole.GetIndex(d) + lower[d]);
     extent.region.SetSize(d, static_cast<itk::SizeValueType>(upper[d] - lower[d] + 1));
   }

@@ -117,7 +117,7 @@ Build(const py::object & image,
     const BuildInput             input = CropToBone(ct, map, contours, parameters.plan);
     PlanBuild(input, parameters, pipeline);
     FinishBuild(parameters.plan, nullptr, pipeline);
-    hierarchy = pipeline.GetCollapse()->GetOutput();
+    hierarchy = pipeline.GetHierarchy();
     hierarchy->DisconnectPipeline();
     for (const auto & level : hierarchy->GetLevels())
     {

@@ -143,7 +143,7 @@ private:
 
 // What a person should look at, by event, with the heights between which it happened.
 std::vector<std::string>
-SummariseEvents(const std::vector<SliceReport> & slices)
+SummariseEvents(const ExtractionReport & report)
 {
   struct Range
   {
@@ -153,15 +153,17 @@ SummariseEvents(const std::vector<SliceReport> & slices)
   };
   const std::vector<std::string> usual = { "the bone ends", "another piece joins" };
   std::map<std::string, Range>   ranges;
-  for (const SliceReport & slice : slices)
+  for (const SliceReport & slice : report.slices)
   {
     std::istringstream events(slice.events);
     for (std::string event; std::getline(events >> std::ws, event, ';');)
     {
       if (std::find(usual.begin(), usual.end(), event) == usual.end())
       {
-        const auto found = ranges.insert({ event.substr(0, event.find(", by a")), { slice.height, slice.height, 0 } });
-        found.first->second.high = slice.height;
+        const double height = report.told(slice.height);
+        const auto   found = ranges.insert({ event.substr(0, event.find(", by a")), { height, height, 0 } });
+        found.first->second.low = std::min(found.first->second.low, height);
+        found.first->second.high = std::max(found.first->second.high, height);
         ++found.first->second.count;
       }
     }
@@ -359,7 +361,7 @@ PropagateSections(std::vector<Section> &       sections,
     report.slices[k].events = events[k];
     snakes.Settle(sections[k], drawn[k] != 0, report.slices[k]);
   });
-  const std::vector<std::string> lines = SummariseEvents(report.slices);
+  const std::vector<std::string> lines = SummariseEvents(report);
   report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
 }
 
