@@ -191,7 +191,7 @@ Plan(const BuildInput & input, const BuildParameters & parameters, BuildPipeline
   const auto resolution = PlanBuild(input, parameters, pipeline, [&](const Resolution & tried, IdType count) {
     std::ostringstream line;
     line << "slices " << tried.sliceStep << " mm, contour points at most " << tried.contourSpacing
-         << " mm apart: " << count << " tetrahedra\n";
+         << " mm apart: about " << count << " tetrahedra\n";
     session.Print(line.str());
   });
   for (const std::string & warning : pipeline.GetWarnings())

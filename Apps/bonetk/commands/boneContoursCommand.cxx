@@ -118,7 +118,7 @@ RunContours(const ContoursOptions & options, Session & session)
       input.surface = MeasureLabel(input.labels, read.bone.label).surface;
     }
     PlanBuild(input, parameters, pipeline, [&session](const Resolution &, IdType tried) {
-      session.Print("tiled with " + std::to_string(tried) + " tetrahedra\n");
+      session.Print("tiled for about " + std::to_string(tried) + " tetrahedra\n");
     });
   }
   else

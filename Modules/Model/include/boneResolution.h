@@ -27,6 +27,11 @@ EstimateSurface(const ContourStack & stack);
 Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra);
 
+/** About how many tetrahedra the quality stage leaves of a tiling with regions and neighbours. It collapses needles on
+ * surfaces and fills the inside anew, so that the number goes with the surfaces' triangles, needles counting less. */
+IdType
+PredictQuality(const MeshArrays & tiled);
+
 /** What may be changed to come to a number of tetrahedra. */
 struct ResolutionSearch
 {
@@ -42,10 +47,11 @@ void
 SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search);
 
 /** Sets slice step and contour spacing of the pipeline, beginning with `start`, until the mesh has the number of
- * tetrahedra within 8 % after the quality stage, which takes some away: in at most three rounds of at most six tilings.
+ * tetrahedra within 8 % after the quality stage: in at most three rounds of at most six tilings, which end where the
+ * number that is predicted (\ref PredictQuality) is that of the search within 5 %.
  * Leaves the best ones set and the quality stage up to date. Far from the number both are changed, near it the spacing
  * alone, which leaves the contours as they are. A resolution at which the tiling fails is passed over; the last failure
- * is thrown where all fail. `tried`, where it is not empty, is told of each tiling. */
+ * is thrown where all fail. `tried`, where it is not empty, is told of each tiling and the number predicted. */
 Resolution
 AdjustResolution(BuildPipeline &                                         pipeline,
                  const Resolution &                                      start,

@@ -3,7 +3,10 @@
  *=========================================================================*/
 #include "boneResolution.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -33,7 +36,7 @@ Resolution
 EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra)
 {
   constexpr double ratio = 0.4;
-  const double     product = 17.0 * surfaceArea / static_cast<double>(tetrahedra);
+  const double     product = 13.0 * surfaceArea / static_cast<double>(tetrahedra);
   Resolution       resolution;
   resolution.sliceStep = std::max(sliceSpacing, std::sqrt(ratio * product));
   resolution.contourSpacing = product / resolution.sliceStep;
@@ -51,19 +54,52 @@ SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const Res
   pipeline.SetContourSpacing(resolution.contourSpacing);
 }
 
+IdType
+PredictQuality(const MeshArrays & tiled)
+{
+  // Fitted to ten bones in three numbers of tetrahedra each: 4.9 % of error (root mean square), 5.8 % on bones left
+  // out.
+  constexpr double wellShaped = 0.5;
+  constexpr double atBoundary = 1.78, atInterfaces = 2.41;
+  double           tetrahedra = 0.0;
+  for (std::size_t t = 0; t < tiled.tetrahedra.size(); ++t)
+  {
+    for (int face = 0; face < 4; ++face)
+    {
+      const IdType other = tiled.neighbors[t][face];
+      const bool   boundary = other < 0;
+      if (!boundary && (other < static_cast<IdType>(t) || tiled.region[t] == tiled.region[other]))
+      {
+        continue;
+      }
+      std::array<Vector3, 3> corners;
+      for (int k = 0; k < 3; ++k)
+      {
+        corners[k] = tiled.points[tiled.tetrahedra[t][(face + 1 + k) % 4]];
+      }
+      const Vector3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[2] - corners[1];
+      const double  shape =
+        2.0 * std::sqrt(3.0) * a.cross(b).norm() / (a.squaredNorm() + b.squaredNorm() + c.squaredNorm());
+      tetrahedra += (boundary ? atBoundary : atInterfaces) * std::sqrt(std::min(1.0, shape / wellShaped));
+    }
+  }
+  return static_cast<IdType>(std::lround(tetrahedra));
+}
+
 namespace
 {
-/** The resolution to try next after one that gave `ratio` times the number asked for. */
+/** The resolution to try next after one that gave `ratio` times the number asked for. \param power  by which the number
+ * goes with what is expected of a change. */
 Resolution
-NextResolution(const Resolution & last, double ratio, const ResolutionSearch & search)
+NextResolution(const Resolution & last, double ratio, double power, const ResolutionSearch & search)
 {
   constexpr double far = 0.12;
   Resolution       next = last;
-  double           remaining = ratio;
+  double           remaining = std::pow(ratio, 1.0 / power);
   if (!search.sliceStepFixed && std::abs(std::log(ratio)) > far)
   {
-    next.sliceStep = std::max(search.sliceSpacing, last.sliceStep * std::sqrt(ratio));
-    remaining = ratio * last.sliceStep / next.sliceStep;
+    next.sliceStep = std::max(search.sliceSpacing, last.sliceStep * std::sqrt(remaining));
+    remaining *= last.sliceStep / next.sliceStep;
   }
   // On fixed slices the number of tetrahedra goes with the number of samples, 1 / spacing.
   next.contourSpacing = last.contourSpacing * std::clamp(remaining, 0.4, 2.5);
@@ -87,18 +123,19 @@ OtherResolution(const Resolution & last, int trial, const ResolutionSearch & sea
   }
   return next;
 }
-/** Finds a resolution at which the tiling has the number of tetrahedra of the search. */
+/** Finds a resolution at which the tiling has the number of tetrahedra of the search, as they are predicted. */
 Resolution
 AdjustTiling(BuildPipeline &                                         pipeline,
              const Resolution &                                      start,
              const ResolutionSearch &                                search,
              const std::function<void(const Resolution &, IdType)> & tried)
 {
-  constexpr double          tolerance = 0.06;
+  constexpr double          tolerance = 0.05;
   constexpr int             maximumTrials = 6;
   std::exception_ptr        failure;
   std::optional<Resolution> best;
-  double                    bestError = 0.0;
+  double                    bestError = 0.0, power = 1.0;
+  double                    former = 1.0; // ratio, of which a change to 1 was expected
   Resolution                resolution = start;
   for (int trial = 0; trial < maximumTrials; ++trial)
   {
@@ -117,9 +154,10 @@ AdjustTiling(BuildPipeline &                                         pipeline,
     {
       failure = std::current_exception();
       resolution = OtherResolution(resolution, trial, search);
+      former = 1.0;
       continue;
     }
-    const IdType count = pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra();
+    const IdType count = PredictQuality(pipeline.GetTiling()->GetOutput()->GetArrays());
     if (tried)
     {
       tried(resolution, count);
@@ -134,7 +172,12 @@ AdjustTiling(BuildPipeline &                                         pipeline,
     {
       break;
     }
-    resolution = NextResolution(resolution, ratio, search);
+    if (std::abs(std::log(former)) > tolerance)
+    {
+      power = std::clamp(power * (1.0 - std::log(ratio) / std::log(former)), 0.5, 2.0);
+    }
+    former = ratio;
+    resolution = NextResolution(resolution, ratio, power, search);
   }
   if (!best)
   {
@@ -154,21 +197,19 @@ AdjustResolution(BuildPipeline &                                         pipelin
 {
   constexpr double tolerance = 0.08;
   constexpr int    maximumTrials = 3;
-  ResolutionSearch tiling = search;
+  ResolutionSearch predicted = search;
   Resolution       resolution = start;
-  double           left = 0.95; // of the tiling's tetrahedra, by the quality stage
   for (int trial = 0; trial < maximumTrials; ++trial)
   {
-    tiling.tetrahedra = static_cast<IdType>(std::lround(static_cast<double>(search.tetrahedra) / left));
-    resolution = AdjustTiling(pipeline, resolution, tiling, tried);
+    resolution = AdjustTiling(pipeline, resolution, predicted, tried);
     pipeline.GetQuality()->Update();
-    const auto tiled = static_cast<double>(pipeline.GetTiling()->GetOutput()->GetNumberOfTetrahedra());
     const auto count = static_cast<double>(pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra());
     if (std::abs(count / static_cast<double>(search.tetrahedra) - 1.0) <= tolerance)
     {
       break;
     }
-    left = count / tiled;
+    const auto foretold = static_cast<double>(PredictQuality(pipeline.GetTiling()->GetOutput()->GetArrays()));
+    predicted.tetrahedra = static_cast<IdType>(std::lround(static_cast<double>(search.tetrahedra) * foretold / count));
   }
   return resolution;
 }
