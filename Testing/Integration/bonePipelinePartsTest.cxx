@@ -279,14 +279,14 @@ TEST(Doubts, TellWhereABuildIsNotWhatWasAskedFor)
 
 TEST(MeshImageMetrics, MeshOnTheLabelsFacesIsAtDistanceZero)
 {
-  const auto distances = bone::MeasureSurfaceDistances(MakeBoxMesh(0.0), bone::MaskOfLabel(MakeBox(), 3));
+  const auto distances = bone::SurfaceDistanceMeter(bone::MaskOfLabel(MakeBox(), 3)).Measure(MakeBoxMesh(0.0));
   EXPECT_NEAR(distances.meshToMask.maximum, 0.0, 1e-9);
   EXPECT_NEAR(distances.maskToMesh.maximum, 0.0, 1e-9);
 }
 
 TEST(MeshImageMetrics, MovedMeshIsAtTheDistanceItWasMoved)
 {
-  const auto distances = bone::MeasureSurfaceDistances(MakeBoxMesh(0.4), bone::MaskOfLabel(MakeBox(), 3));
+  const auto distances = bone::SurfaceDistanceMeter(bone::MaskOfLabel(MakeBox(), 3)).Measure(MakeBoxMesh(0.4));
   EXPECT_NEAR(distances.meshToMask.maximum, 0.4, 1e-9);
   EXPECT_NEAR(distances.maskToMesh.maximum, 0.4, 1e-9);
   EXPECT_LT(distances.meshToMask.mean, 0.4);

@@ -333,7 +333,7 @@ PrintAgreement(const std::string &      when,
   filter->SetReferenceImage(grid);
   filter->SetOutsideValue(std::numeric_limits<float>::quiet_NaN());
   filter->Update();
-  const bone::SurfaceDistances distances = bone::MeasureSurfaceDistances(mesh, mask);
+  const bone::SurfaceDistances distances = bone::SurfaceDistanceMeter(mask).Measure(mesh);
   std::cout << when << ".dice " << bone::DiceOverlap(filter->GetOutput(), mask) << '\n'
             << when << ".to_label " << distances.meshToMask.mean << '\n'
             << when << ".to_label95 " << distances.meshToMask.percentile95 << '\n'

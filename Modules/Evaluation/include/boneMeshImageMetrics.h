@@ -6,6 +6,7 @@
 
 #include "boneImageIO.h"
 #include "boneDensityEvaluation.h"
+#include "boneTriangleTree.h"
 
 namespace bone
 {
@@ -34,8 +35,19 @@ struct SurfaceDistances
   SurfaceDistance maskToMesh;
 };
 
-SurfaceDistances
-MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask);
+/** \brief Measures the distances of meshes to the surface of one mask, on all threads. */
+class SurfaceDistanceMeter
+{
+public:
+  explicit SurfaceDistanceMeter(const LabelImage * mask);
+
+  SurfaceDistances
+  Measure(const MeshArrays & mesh) const;
+
+private:
+  TriangleTree         m_Faces;
+  std::vector<Vector3> m_Centres; ///< of the faces
+};
 
 /** Density of the model against that of the CT, over the voxels that lie in the model and in the mask. */
 DensityComparison

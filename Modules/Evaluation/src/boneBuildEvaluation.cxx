@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace bone
 {
@@ -141,7 +142,8 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   LabelImage::ConstPointer mask = evidence.mask;
   const PlaneView          cut = FrameLargestCut(finest.points, 5.0, 420);
   std::vector<LevelPanel>  cuts;
-  RadiographPanels         front, side;
+  const auto       distances = evidence.mask ? std::make_optional<SurfaceDistanceMeter>(evidence.mask) : std::nullopt;
+  RadiographPanels front, side;
   side.geometry = LateralView(levels.front().mesh);
   for (std::size_t i = 0; i < levels.size(); ++i)
   {
@@ -159,7 +161,7 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
     if (evidence.mask.IsNotNull())
     {
       report.dice = DiceOverlap(model, mask);
-      report.distances = MeasureSurfaceDistances(arrays, mask);
+      report.distances = distances->Measure(arrays);
     }
     report.density = CompareWithImage(arrays, evidence.ct, mask);
 

@@ -3,8 +3,8 @@
  *=========================================================================*/
 #include "boneMeshImageMetrics.h"
 
+#include "boneExecution.h"
 #include "boneOrthonormalBasis.h"
-#include "boneTriangleTree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,9 +110,14 @@ MaskSurface(const LabelImage * mask, std::vector<TriangleTree::Triangle> & trian
 SurfaceDistance
 DistanceToTree(const std::vector<Vector3> & points, const TriangleTree & tree)
 {
-  std::vector<double> distances(points.size());
-  std::transform(points.begin(), points.end(), distances.begin(), [&tree](const Vector3 & p) {
-    return std::sqrt(tree.FindNearest(p).squaredDistance);
+  constexpr std::size_t chunk = 4096; // of points that follow each other, which are near each other
+  std::vector<double>   distances(points.size());
+  Execution().For((points.size() + chunk - 1) / chunk, [&](std::size_t c) {
+    int nearest = -1;
+    for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i)
+    {
+      distances[i] = std::sqrt(tree.FindSquaredDistance(points[i], nearest));
+    }
   });
   return Summarize(distances);
 }
@@ -136,8 +141,15 @@ DiceOverlap(const CTImage * model, const LabelImage * mask)
   return sum == 0 ? 0.0 : 2.0 * static_cast<double>(both) / static_cast<double>(sum);
 }
 
+SurfaceDistanceMeter::SurfaceDistanceMeter(const LabelImage * mask)
+{
+  std::vector<TriangleTree::Triangle> faces;
+  MaskSurface(mask, faces, m_Centres);
+  m_Faces = TriangleTree(std::move(faces));
+}
+
 SurfaceDistances
-MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask)
+SurfaceDistanceMeter::Measure(const MeshArrays & mesh) const
 {
   std::vector<TriangleTree::Triangle> boundary;
   std::vector<Vector3>                samples;
@@ -146,12 +158,9 @@ MeasureSurfaceDistances(const MeshArrays & mesh, const LabelImage * mask)
     boundary.push_back({ { mesh.points[face[0]], mesh.points[face[1]], mesh.points[face[2]] } });
     SampleTriangle(boundary.back(), 0.5, samples);
   }
-  std::vector<TriangleTree::Triangle> faces;
-  std::vector<Vector3>                centres;
-  MaskSurface(mask, faces, centres);
   SurfaceDistances distances;
-  distances.meshToMask = DistanceToTree(samples, TriangleTree(std::move(faces)));
-  distances.maskToMesh = DistanceToTree(centres, TriangleTree(std::move(boundary)));
+  distances.meshToMask = DistanceToTree(samples, m_Faces);
+  distances.maskToMesh = DistanceToTree(m_Centres, TriangleTree(std::move(boundary)));
   return distances;
 }
 

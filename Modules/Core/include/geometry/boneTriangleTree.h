@@ -47,6 +47,11 @@ public:
   Nearest
   FindNearest(const Vector3 & x) const;
 
+  /** The squared distance of the nearest point, and its triangle; quicker where `triangle` is near x already, as that
+   * of the point before. */
+  double
+  FindSquaredDistance(const Vector3 & x, int & triangle) const;
+
   /** Whether a triangle lies within a distance, given squared, of x: quicker than to find the nearest. */
   bool
   IsWithin(const Vector3 & x, double squaredDistance) const;
@@ -69,6 +74,10 @@ private:
 
   int
   Build(int begin, int end);
+
+  /** The nearest point, where it is nearer than that of `nearest`. */
+  void
+  FindNearer(const Vector3 & x, Nearest & nearest) const;
 
   std::vector<Triangle> m_Triangles;
   std::vector<int>      m_Order;

@@ -129,6 +129,30 @@ TriangleTree::FindNearest(const Vector3 & x) const
     return nearest;
   }
   nearest.squaredDistance = std::numeric_limits<double>::max();
+  this->FindNearer(x, nearest);
+  return nearest;
+}
+
+double
+TriangleTree::FindSquaredDistance(const Vector3 & x, int & triangle) const
+{
+  Nearest nearest;
+  nearest.squaredDistance = std::numeric_limits<double>::max();
+  if (triangle >= 0)
+  {
+    const Triangle & t = m_Triangles[triangle];
+    nearest.point = ClosestPointOnTriangle(x, t[0], t[1], t[2]);
+    nearest.squaredDistance = (nearest.point - x).squaredNorm();
+    nearest.triangle = triangle;
+  }
+  this->FindNearer(x, nearest);
+  triangle = nearest.triangle;
+  return nearest.squaredDistance;
+}
+
+void
+TriangleTree::FindNearer(const Vector3 & x, Nearest & nearest) const
+{
   // The tree is balanced: its depth is below 32, and each level leaves one node waiting.
   std::array<std::pair<double, int>, 64> stack;
   int                                    waiting = 0;
@@ -162,7 +186,6 @@ TriangleTree::FindNearest(const Vector3 & x) const
     stack[waiting++] = toLeft <= toRight ? far : near;
     stack[waiting++] = toLeft <= toRight ? near : far;
   }
-  return nearest;
 }
 
 bool
