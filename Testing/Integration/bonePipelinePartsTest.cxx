@@ -4,8 +4,10 @@
 #include "boneBuildPlan.h"
 #include "boneBuildReport.h"
 #include "boneLabelCrop.h"
+#include "boneFemurPhantom.h"
 #include "boneLabelValue.h"
 #include "boneMeshImageMetrics.h"
+#include "bonePhantomImageSource.h"
 #include "boneResolution.h"
 
 #include <itkImageRegionIteratorWithIndex.h>
@@ -312,6 +314,62 @@ TEST(MeshImageMetrics, OverlapAndPercentilesLookAtTheMask)
   EXPECT_NEAR(percentiles[1], 0.99 * static_cast<double>(inside), 1.0);
   model->FillBuffer(1.0F);
   EXPECT_DOUBLE_EQ(bone::DiceOverlap(model, mask), 2.0 * inside / static_cast<double>(inside + count));
+}
+
+TEST(Resolution, PredictionCountsSurfacesOnceAndNeedlesLess)
+{
+  // Two equilateral tetrahedra, face to face: six triangles of the boundary, and the interface where the regions
+  // differ.
+  bone::MeshArrays mesh;
+  const double     height = std::sqrt(2.0 / 3.0), middle = std::sqrt(3.0) / 6.0;
+  mesh.points = {
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, std::sqrt(0.75), 0 }, { 0.5, middle, height }, { 0.5, middle, -height }
+  };
+  mesh.tetrahedra = { { { 0, 1, 2, 3 } }, { { 1, 0, 2, 4 } } };
+  mesh.neighbors = bone::ComputeFaceNeighbors(mesh.tetrahedra);
+  mesh.region = { 1, 1 };
+  EXPECT_EQ(bone::PredictQuality(mesh), std::lround(6 * 1.78));
+  mesh.region = { 1, 2 };
+  EXPECT_EQ(bone::PredictQuality(mesh), std::lround(6 * 1.78 + 2.41));
+  for (bone::Vector3 & p : mesh.points)
+  {
+    p.z() *= 50.0;
+  }
+  EXPECT_LT(bone::PredictQuality(mesh), std::lround(0.5 * 6 * 1.78 + 2.41));
+}
+
+TEST(Resolution, PredictionHoldsForAPhantomAtTwoResolutions)
+{
+  const auto source = bone::PhantomImageSource<bone::CTImage>::New();
+  source->SetModel(std::make_shared<const bone::FemurPhantom>());
+  source->SetSpacing(bone::CTImage::SpacingType(1.5));
+  source->Update();
+  for (const double spacing : { 6.0, 9.0 })
+  {
+    bone::BuildParameters parameters;
+    parameters.plan.sliceStep = 0.6 * spacing;
+    parameters.plan.contourSpacing = spacing;
+    bone::BuildPipeline pipeline(1);
+    bone::PlanBuild(
+      bone::CropToBone(source->GetOutput(), source->GetLabelOutput(), nullptr, parameters.plan), parameters, pipeline);
+    const auto predicted = static_cast<double>(bone::PredictQuality(pipeline.GetTiling()->GetOutput()->GetArrays()));
+    const auto made = static_cast<double>(pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra());
+    EXPECT_NEAR(predicted / made, 1.0, 0.15) << predicted << " and " << made;
+  }
+}
+
+TEST(Resolution, ContoursAreOnSlicesOfTheImageWhateverTheStep)
+{
+  bone::BuildPipeline    pipeline(1);
+  bone::ResolutionSearch search;
+  search.sliceSpacing = 0.5;
+  for (const auto & [step, expected] :
+       { std::pair(1.9, 0.0), std::pair(3.9, 0.0), std::pair(4.1, 1.0), std::pair(7.0, 1.5) })
+  {
+    bone::SetResolution(pipeline, { step, 4.0 }, search);
+    EXPECT_DOUBLE_EQ(pipeline.GetSnake()->GetSliceStep(), expected) << step;
+    EXPECT_DOUBLE_EQ(pipeline.GetSlices()->GetMeanSpacing(), step);
+  }
 }
 
 TEST(Resolution, EstimateScalesWithTheSquareRoot)

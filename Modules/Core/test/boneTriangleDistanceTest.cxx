@@ -55,3 +55,33 @@ TEST(TriangleDistance, TurnsASurfaceThatLooksInward)
   EXPECT_NEAR(distance.FindNearest(Vector3::Zero()).distance, -1.0, 1e-12);
   EXPECT_NEAR(distance.FindNearest({ 3, 0, 0 }).distance, 2.0, 1e-12);
 }
+
+TEST(TriangleTree, ASearchThatBeginsAtAnyTriangleFindsTheNearest)
+{
+  std::mt19937                           random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto                             place = [&] {
+    const double a = unit(random), b = unit(random), c = unit(random);
+    return Vector3(a, b, c);
+  };
+  std::vector<TriangleTree::Triangle> triangles;
+  for (int n = 0; n < 300; ++n)
+  {
+    const Vector3 a = place();
+    triangles.push_back({ a, a + 0.2 * place(), a + 0.2 * place() });
+  }
+  const TriangleTree tree(triangles);
+  for (int n = 0; n < 500; ++n)
+  {
+    const Vector3 x = 1.5 * place();
+    const auto    nearest = tree.FindNearest(x);
+    for (int triangle : { -1, nearest.triangle, n % 300 })
+    {
+      EXPECT_EQ(tree.FindSquaredDistance(x, triangle), nearest.squaredDistance);
+      EXPECT_EQ(triangle, nearest.triangle);
+    }
+  }
+  int none = -1;
+  TriangleTree().FindSquaredDistance({}, none);
+  EXPECT_EQ(none, -1);
+}

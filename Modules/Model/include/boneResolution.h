@@ -42,7 +42,7 @@ struct ResolutionSearch
 };
 
 /** Sets the slices and the contours' spacing. With adaptive slices the contours are made on those of the image, or on
- * slices a quarter of the step apart if these are finer, and then chosen from. */
+ * every second, third, ... of them as far as that is within a quarter of the step, and then chosen from. */
 void
 SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search);
 

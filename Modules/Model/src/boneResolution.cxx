@@ -46,10 +46,11 @@ EstimateResolution(double surfaceArea, double sliceSpacing, IdType tetrahedra)
 void
 SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const ResolutionSearch & search)
 {
-  const double quarter = 0.25 * resolution.sliceStep;
-  pipeline.GetSnake()->SetSliceStep(!search.adaptive                ? resolution.sliceStep
-                                    : search.sliceSpacing < quarter ? quarter
-                                                                    : 0.0);
+  // Whole numbers of the image's slices, which stay the same from one trial to the next.
+  const double every = std::floor(0.25 * resolution.sliceStep / search.sliceSpacing);
+  pipeline.GetSnake()->SetSliceStep(!search.adaptive ? resolution.sliceStep
+                                    : every > 1.0    ? every * search.sliceSpacing
+                                                     : 0.0);
   pipeline.GetSlices()->SetMeanSpacing(search.adaptive ? resolution.sliceStep : 0.0);
   pipeline.SetContourSpacing(resolution.contourSpacing);
 }

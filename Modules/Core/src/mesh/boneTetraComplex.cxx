@@ -42,54 +42,7 @@ CommonIsWithin(const std::vector<T> & a, const std::vector<T> & b, const std::ve
   return std::includes(c.begin(), c.end(), common.begin(), common.end());
 }
 
-/** Vertices and edges of the link of v, and of the link of the edge v w, from the cells around v. */
-struct Link
-{
-  std::vector<IdType> vertices;
-  std::vector<Pair>   edges;
-  std::vector<IdType> edgeVertices; // of the link of v w
-  std::vector<Pair>   edgeEdges;
-
-  Link(const TetraComplex & complex, IdType v, IdType w)
-  {
-    for (IdType t : complex.Star(v))
-    {
-      IdType others[3];
-      int    n = 0;
-      bool   hasW = false;
-      for (IdType p : complex.Cell(t))
-      {
-        if (p == w)
-        {
-          hasW = true;
-        }
-        else if (p != v)
-        {
-          others[n++] = p;
-        }
-      }
-      vertices.insert(vertices.end(), others, others + n);
-      for (int i = 0; i < n; ++i)
-      {
-        for (int j = i + 1; j < n; ++j)
-        {
-          edges.push_back(Ordered(others[i], others[j]));
-        }
-      }
-      if (hasW)
-      {
-        edgeVertices.insert(edgeVertices.end(), others, others + n);
-        edgeEdges.push_back(Ordered(others[0], others[1]));
-      }
-    }
-    SortUnique(vertices);
-    SortUnique(edges);
-    SortUnique(edgeVertices);
-    SortUnique(edgeEdges);
-  }
-};
-
-/** The same for the complex of surface faces. */
+/** Vertices and edges of the link of v, and of the link of the edge v w, in the complex of surface faces. */
 struct SurfaceLink
 {
   std::vector<IdType> vertices;
@@ -439,21 +392,31 @@ TetraComplex::CanCollapse(IdType v, IdType w) const
 bool
 TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
 {
-  // Neighbours of v are marked, those that w shares by the edge's link with 2. The star of w may be large.
-  const Link link(*this, v, w);
+  // Neighbours of v are marked with 1, those that w shares by the edge's link with 2. The star of w may be large.
   m_Mark.resize(m_Points.size(), 0);
-  for (IdType p : link.vertices)
+  for (IdType t : m_Star[v])
   {
-    m_Mark[p] = 1;
+    const char mark = Has(t, w) ? 2 : 1;
+    for (IdType p : m_Cells[t])
+    {
+      m_Mark[p] = std::max(m_Mark[p], mark);
+    }
   }
-  for (IdType p : link.edgeVertices)
-  {
-    m_Mark[p] = 2;
-  }
+  // An edge of v's link that is none of the edge's.
   const auto sharedEdge = [&](IdType p, IdType q) {
-    const Pair edge = Ordered(p, q);
-    return std::binary_search(link.edges.begin(), link.edges.end(), edge) &&
-           !std::binary_search(link.edgeEdges.begin(), link.edgeEdges.end(), edge);
+    bool found = false;
+    for (IdType t : m_Star[v])
+    {
+      if (Has(t, p) && Has(t, q))
+      {
+        if (Has(t, w))
+        {
+          return false;
+        }
+        found = true;
+      }
+    }
+    return found;
   };
   bool meet = true;
   for (std::size_t k = 0; k < m_Star[w].size() && meet; ++k)
@@ -468,12 +431,18 @@ TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
         shared[n++] = p;
       }
     }
-    meet = meet && (n < 2 || !sharedEdge(shared[0], shared[1])) &&
-           (n < 3 || (!sharedEdge(shared[0], shared[2]) && !sharedEdge(shared[1], shared[2])));
+    if (meet && n > 1 && !Has(m_Star[w][k], v))
+    {
+      meet = !sharedEdge(shared[0], shared[1]) &&
+             (n < 3 || (!sharedEdge(shared[0], shared[2]) && !sharedEdge(shared[1], shared[2])));
+    }
   }
-  for (IdType p : link.vertices)
+  for (IdType t : m_Star[v])
   {
-    m_Mark[p] = 0;
+    for (IdType p : m_Cells[t])
+    {
+      m_Mark[p] = 0;
+    }
   }
   return meet;
 }

@@ -169,21 +169,30 @@ AddOutline(const TetraComplex & complex,
   }
   const TriangleTree                                 tree(std::move(triangles));
   std::vector<std::optional<SurfaceBending::Spring>> found(outline.faces.size());
-  execution.For(found.size(), [&](std::size_t k) {
+  const auto                                         addFace = [&](std::size_t k, int & nearest) {
     const LabelOutline::Face & face = outline.faces[k];
     const double               along = normal ? normal->dot(face.outward) : 1.0;
-    const auto                 nearest = tree.FindNearest(face.centre);
-    if (nearest.triangle < 0 || nearest.squaredDistance > farthest * farthest)
+    if (tree.FindSquaredDistance(face.centre, nearest) > farthest * farthest || nearest < 0)
     {
       return;
     }
-    const TriangleIds & f = ids[nearest.triangle];
+    const TriangleIds & f = ids[nearest];
     const double        slope = (x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).normalized().dot(face.outward);
     if (slope > leastSlope)
     {
-      const double weight = WeightWithinSlices + (1.0 - WeightWithinSlices) * along * along;
-      const double total = WeightOfOutline * weight * slope * face.area;
-      found[k] = SurfaceBending::Spring{ f, SharesAt(x, f, nearest.point), total, face.centre };
+      const double  weight = WeightWithinSlices + (1.0 - WeightWithinSlices) * along * along;
+      const double  total = WeightOfOutline * weight * slope * face.area;
+      const Vector3 foot = ClosestPointOnTriangle(face.centre, x[f[0]], x[f[1]], x[f[2]]);
+      found[k] = SurfaceBending::Spring{ f, SharesAt(x, f, foot), total, face.centre };
+    }
+  };
+  // Faces that follow each other lie near each other.
+  constexpr std::size_t run = 256;
+  execution.For((found.size() + run - 1) / run, [&](std::size_t r) {
+    int nearest = -1;
+    for (std::size_t k = r * run; k < std::min(found.size(), (r + 1) * run); ++k)
+    {
+      addFace(k, nearest);
     }
   });
   for (const auto & spring : found)
