@@ -136,6 +136,10 @@ TriangleTree::FindNearest(const Vector3 & x) const
 double
 TriangleTree::FindSquaredDistance(const Vector3 & x, int & triangle) const
 {
+  if (m_Nodes.empty())
+  {
+    return std::numeric_limits<double>::max();
+  }
   Nearest nearest;
   nearest.squaredDistance = std::numeric_limits<double>::max();
   if (triangle >= 0)
