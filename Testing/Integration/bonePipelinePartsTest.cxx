@@ -9,6 +9,9 @@
 #include "boneMeshImageMetrics.h"
 #include "bonePhantomImageSource.h"
 #include "boneResolution.h"
+#include "boneVoxelFaces.h"
+
+#include <Eigen/Geometry>
 
 #include <itkImageRegionIteratorWithIndex.h>
 
@@ -17,6 +20,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <random>
 
 namespace
 {
@@ -293,6 +298,70 @@ TEST(MeshImageMetrics, MovedMeshIsAtTheDistanceItWasMoved)
   EXPECT_NEAR(distances.maskToMesh.maximum, 0.4, 1e-9);
   EXPECT_LT(distances.meshToMask.mean, 0.4);
   EXPECT_GT(distances.meshToMask.mean, 0.05);
+}
+
+TEST(MeshImageMetrics, DistanceToVoxelFacesIsThatToTheNearestOfThem)
+{
+  // Noise in an oblique image of long voxels, to its border; the faces are looked at one by one.
+  auto                            mask = bone::LabelImage::New();
+  const double                    spacing[3] = { 0.5, 0.8, 2.0 }, origin[3] = { -3.0, 20.0, 7.0 };
+  bone::LabelImage::DirectionType direction;
+  const Eigen::Matrix3d           turn = Eigen::AngleAxisd(0.7, bone::Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  for (unsigned int k = 0; k < 9; ++k)
+  {
+    direction[k / 3][k % 3] = turn(k / 3, k % 3);
+  }
+  mask->SetRegions(bone::LabelImage::SizeType{ { 6, 5, 4 } });
+  mask->SetSpacing(spacing);
+  mask->SetOrigin(origin);
+  mask->SetDirection(direction);
+  mask->Allocate(true);
+  EXPECT_EQ(bone::VoxelFaces(mask).Distance({ 1, 2, 3 }), std::numeric_limits<double>::infinity());
+  std::mt19937 random(3);
+  for (itk::ImageRegionIteratorWithIndex<bone::LabelImage> it(mask, mask->GetLargestPossibleRegion()); !it.IsAtEnd();
+       ++it)
+  {
+    it.Set(random() % 3 == 0 ? 2 : 0);
+  }
+  const bone::VoxelFaces faces(mask);
+  const auto             inside = [&](itk::Index<3> i) {
+    return mask->GetLargestPossibleRegion().IsInside(i) && mask->GetPixel(i) != 0;
+  };
+  for (int n = 0; n < 300; ++n)
+  {
+    bone::Vector3 q;
+    for (int d = 0; d < 3; ++d)
+    {
+      q[d] = (static_cast<double>(random() % 1000) / 500.0 - 0.5) * 6.0 * spacing[d];
+    }
+    double      least = std::numeric_limits<double>::infinity();
+    std::size_t count = 0;
+    for (int cell = 0; cell < 7 * 6 * 5; ++cell)
+    {
+      const itk::Index<3> i = { { cell % 7 - 1, cell / 7 % 6 - 1, cell / 42 - 1 } };
+      for (unsigned int d = 0; d < 3; ++d)
+      {
+        itk::Index<3> next = i;
+        ++next[d];
+        if (inside(i) == inside(next))
+        {
+          continue;
+        }
+        ++count;
+        bone::Vector3 off;
+        for (unsigned int e = 0; e < 3; ++e)
+        {
+          const double from = std::abs(q[e] - (static_cast<double>(i[e]) + (e == d ? 0.5 : 0.0)) * spacing[e]);
+          off[e] = e == d ? from : std::max(0.0, from - 0.5 * spacing[e]);
+        }
+        least = std::min(least, off.norm());
+      }
+    }
+    const bone::Vector3 x = turn * q + bone::Vector3(origin[0], origin[1], origin[2]);
+    EXPECT_NEAR(faces.Distance(x), least, 1e-9);
+    EXPECT_EQ(faces.GetCentres().size(), count);
+    EXPECT_NEAR(faces.Distance(faces.GetCentres()[static_cast<std::size_t>(n) % count]), 0.0, 1e-9);
+  }
 }
 
 TEST(MeshImageMetrics, OverlapAndPercentilesLookAtTheMask)

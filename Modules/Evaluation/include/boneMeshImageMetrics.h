@@ -6,7 +6,7 @@
 
 #include "boneImageIO.h"
 #include "boneDensityEvaluation.h"
-#include "boneTriangleTree.h"
+#include "boneVoxelFaces.h"
 
 namespace bone
 {
@@ -45,7 +45,7 @@ public:
   Measure(const MeshArrays & mesh) const;
 
 private:
-  TriangleTree         m_Faces;
+  VoxelFaces           m_Faces;
   std::vector<Vector3> m_Centres; ///< of the faces
 };
 

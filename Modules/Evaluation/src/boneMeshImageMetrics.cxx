@@ -5,6 +5,7 @@
 
 #include "boneExecution.h"
 #include "boneOrthonormalBasis.h"
+#include "boneTriangleTree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,59 +55,6 @@ SampleTriangle(const TriangleTree::Triangle & t, double step, std::vector<Vector
   }
 }
 
-/** The faces between voxels inside and outside the mask: two triangles each, and the faces' centres. */
-void
-MaskSurface(const LabelImage * mask, std::vector<TriangleTree::Triangle> & triangles, std::vector<Vector3> & centres)
-{
-  const auto    region = mask->GetLargestPossibleRegion();
-  const auto    size = region.GetSize();
-  const short * buffer = mask->GetBufferPointer();
-  const long    n[3] = { static_cast<long>(size[0]), static_cast<long>(size[1]), static_cast<long>(size[2]) };
-  const auto    inside = [&](const std::array<long, 3> & i) {
-    return i[0] >= 0 && i[1] >= 0 && i[2] >= 0 && i[0] < n[0] && i[1] < n[1] && i[2] < n[2] &&
-           buffer[(i[2] * n[1] + i[1]) * n[0] + i[0]] != 0;
-  };
-  const auto toSpace = [&](const Vector3 & index) {
-    itk::ContinuousIndex<double, 3> c;
-    for (unsigned int d = 0; d < 3; ++d)
-    {
-      c[d] = index[d] + static_cast<double>(region.GetIndex(d));
-    }
-    LabelImage::PointType p;
-    mask->TransformContinuousIndexToPhysicalPoint(c, p);
-    return Vector3(p[0], p[1], p[2]);
-  };
-  std::array<long, 3> i{};
-  for (i[2] = -1; i[2] < n[2]; ++i[2])
-  {
-    for (i[1] = -1; i[1] < n[1]; ++i[1])
-    {
-      for (i[0] = -1; i[0] < n[0]; ++i[0])
-      {
-        for (int d = 0; d < 3; ++d)
-        {
-          std::array<long, 3> next = i;
-          ++next[d];
-          if (inside(i) == inside(next))
-          {
-            continue;
-          }
-          const Vector3 centre = Vector3(double(i[0]), double(i[1]), double(i[2])) + 0.5 * Vector3::Unit(d);
-          const Vector3 u = 0.5 * Vector3::Unit((d + 1) % 3);
-          const Vector3 v = 0.5 * Vector3::Unit((d + 2) % 3);
-          const Vector3 a = toSpace(centre - u - v);
-          const Vector3 b = toSpace(centre + u - v);
-          const Vector3 c = toSpace(centre + u + v);
-          const Vector3 e = toSpace(centre - u + v);
-          triangles.push_back({ { a, b, c } });
-          triangles.push_back({ { a, c, e } });
-          centres.push_back(toSpace(centre));
-        }
-      }
-    }
-  }
-}
-
 SurfaceDistance
 DistanceToTree(const std::vector<Vector3> & points, const TriangleTree & tree)
 {
@@ -119,6 +67,15 @@ DistanceToTree(const std::vector<Vector3> & points, const TriangleTree & tree)
       distances[i] = std::sqrt(tree.FindSquaredDistance(points[i], nearest));
     }
   });
+  return Summarize(distances);
+}
+
+SurfaceDistance
+DistanceToFaces(const std::vector<Vector3> & points, const VoxelFaces & faces)
+{
+  std::vector<double> distances(points.size());
+  Execution().For(
+    points.size(), [&](std::size_t i) { distances[i] = faces.Distance(points[i]); }, 1024);
   return Summarize(distances);
 }
 } // namespace
@@ -142,11 +99,9 @@ DiceOverlap(const CTImage * model, const LabelImage * mask)
 }
 
 SurfaceDistanceMeter::SurfaceDistanceMeter(const LabelImage * mask)
-{
-  std::vector<TriangleTree::Triangle> faces;
-  MaskSurface(mask, faces, m_Centres);
-  m_Faces = TriangleTree(std::move(faces));
-}
+  : m_Faces(mask)
+  , m_Centres(m_Faces.GetCentres())
+{}
 
 SurfaceDistances
 SurfaceDistanceMeter::Measure(const MeshArrays & mesh) const
@@ -159,7 +114,7 @@ SurfaceDistanceMeter::Measure(const MeshArrays & mesh) const
     SampleTriangle(boundary.back(), 0.5, samples);
   }
   SurfaceDistances distances;
-  distances.meshToMask = DistanceToTree(samples, m_Faces);
+  distances.meshToMask = DistanceToFaces(samples, m_Faces);
   distances.maskToMesh = DistanceToTree(m_Centres, TriangleTree(std::move(boundary)));
   return distances;
 }

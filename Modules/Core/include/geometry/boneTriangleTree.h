@@ -47,8 +47,8 @@ public:
   Nearest
   FindNearest(const Vector3 & x) const;
 
-  /** The squared distance of the nearest point, and its triangle; quicker where `triangle` is near x already, as that
-   * of the point before. */
+  /** The squared distance of the nearest point, and its triangle, both as FindNearest has them; quicker where
+   * `triangle` is near x already, as that of the point before. */
   double
   FindSquaredDistance(const Vector3 & x, int & triangle) const;
 

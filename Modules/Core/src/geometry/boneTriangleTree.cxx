@@ -144,10 +144,10 @@ TriangleTree::FindSquaredDistance(const Vector3 & x, int & triangle) const
   nearest.squaredDistance = std::numeric_limits<double>::max();
   if (triangle >= 0)
   {
+    // A bound alone: of equally near triangles it is the one that FindNearest finds.
     const Triangle & t = m_Triangles[triangle];
-    nearest.point = ClosestPointOnTriangle(x, t[0], t[1], t[2]);
-    nearest.squaredDistance = (nearest.point - x).squaredNorm();
-    nearest.triangle = triangle;
+    const double     squared = (ClosestPointOnTriangle(x, t[0], t[1], t[2]) - x).squaredNorm();
+    nearest.squaredDistance = std::nextafter(squared, nearest.squaredDistance);
   }
   this->FindNearer(x, nearest);
   triangle = nearest.triangle;
