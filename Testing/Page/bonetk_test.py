@@ -157,7 +157,7 @@ class Beads(unittest.TestCase):
             place = pathlib.Path(cls.folder.name, name)
             place.mkdir()
             affine, size = phantom.write(name, place / "ct.nii.gz", place / "l.nii.gz")
-            must("build", place / "ct.nii.gz", "--labels", place / "l.nii.gz", "--tetrahedra", 4000, "--levels", 0.4, "--degree", 3,
+            must("build", place / "ct.nii.gz", "--labels", place / "l.nii.gz", "--tetrahedra", 6000, "--levels", 0.4, "--degree", 3,
                  "-q", "-o", place / "m")
             index = numpy.linalg.inv(affine)
             wanted = [float((index[:3, :3] @ bead + index[:3, 3])[2]) for bead in phantom.BEADS.values()]

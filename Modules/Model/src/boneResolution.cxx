@@ -90,14 +90,14 @@ PredictQuality(const MeshArrays & tiled)
 namespace
 {
 /** The resolution to try next after one that gave `ratio` times the number asked for. \param power  by which the number
- * goes with what is expected of a change. */
+ * goes with what is expected of a change. \param both  whether slices change too where the number is near. */
 Resolution
-NextResolution(const Resolution & last, double ratio, double power, const ResolutionSearch & search)
+NextResolution(const Resolution & last, double ratio, double power, bool both, const ResolutionSearch & search)
 {
   constexpr double far = 0.12;
   Resolution       next = last;
   double           remaining = std::pow(ratio, 1.0 / power);
-  if (!search.sliceStepFixed && std::abs(std::log(ratio)) > far)
+  if (!search.sliceStepFixed && (both || std::abs(std::log(ratio)) > far))
   {
     next.sliceStep = std::max(search.sliceSpacing, last.sliceStep * std::sqrt(remaining));
     remaining *= last.sliceStep / next.sliceStep;
@@ -131,12 +131,13 @@ AdjustTiling(BuildPipeline &                                         pipeline,
              const ResolutionSearch &                                search,
              const std::function<void(const Resolution &, IdType)> & tried)
 {
-  constexpr double          tolerance = 0.05;
+  constexpr double          tolerance = 0.05, leastChange = 0.05;
   constexpr int             maximumTrials = 6;
   std::exception_ptr        failure;
   std::optional<Resolution> best;
   double                    bestError = 0.0, power = 1.0;
   double                    former = 1.0; // ratio, of which a change to 1 was expected
+  bool                      both = false; // slices and spacing are changed together
   Resolution                resolution = start;
   for (int trial = 0; trial < maximumTrials; ++trial)
   {
@@ -173,12 +174,15 @@ AdjustTiling(BuildPipeline &                                         pipeline,
     {
       break;
     }
-    if (std::abs(std::log(former)) > tolerance)
+    if (std::abs(std::log(former)) > leastChange)
     {
-      power = std::clamp(power * (1.0 - std::log(ratio) / std::log(former)), 0.5, 2.0);
+      const double done = 1.0 - std::log(ratio) / std::log(former); // of the change that was expected
+      power = std::clamp(power * done, 0.5, 2.0);
+      // Thin layers have as many samples as they need, whatever their spacing.
+      both = both || done < 0.5;
     }
     former = ratio;
-    resolution = NextResolution(resolution, ratio, power, search);
+    resolution = NextResolution(resolution, ratio, power, both, search);
   }
   if (!best)
   {

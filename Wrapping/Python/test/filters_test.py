@@ -23,6 +23,7 @@ NOT_FILTERS = {
     "FileTrainingSet": "data in files: bonetk.commands.train",
     "StatisticalModel": "data",
     "XRayGeometry": "data",
+    "PlacementFilter": "a step of build, whose models are in their place",
     "RigidCostMetric": "for ITK's optimisers; those of Python take Projector",
 }
 FILTERS = [
