@@ -176,6 +176,21 @@ TEST(OwnOrientation, FlippedVoxelsStayWhereTheyAre)
   EXPECT_EQ(Flip(box.ct, Axes(0)), box.ct);
 }
 
+TEST(OwnOrientation, TheOwnGridSharesVoxelsThatASourceMakes)
+{
+  auto                 source = PhantomImageSource<CTImage>::New();
+  CTImage::SpacingType spacing(8.0);
+  source->SetModel(std::make_shared<const FemurPhantom>());
+  source->SetSpacing(spacing);
+  const auto own = OnOwnGrid(source->GetOutput());
+  EXPECT_EQ(own->GetBufferPointer(), source->GetOutput()->GetBufferPointer());
+  EXPECT_GT(own->GetLargestPossibleRegion().GetNumberOfPixels(), 100U);
+  EXPECT_EQ(own->GetOrigin(), CTImage::PointType(0.0));
+  EXPECT_EQ(own->GetSpacing(), spacing);
+  EXPECT_NE(source->GetOutput()->GetOrigin(), own->GetOrigin());
+  EXPECT_EQ(OnOwnGrid(static_cast<const LabelImage *>(nullptr)), nullptr);
+}
+
 TEST(OwnOrientation, AMirroredBoneGivesTheMirroredModel)
 {
   using Source = PhantomImageSource<CTImage>;

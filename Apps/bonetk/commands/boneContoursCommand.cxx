@@ -10,7 +10,6 @@
 #include "boneContourIO.h"
 #include "boneFileName.h"
 #include "boneContourImage.h"
-#include "boneLabelCrop.h"
 #include "bonePlacement.h"
 
 #include <algorithm>
@@ -104,19 +103,9 @@ RunContours(const ContoursOptions & options, Session & session)
   {
     session.Watch(filter, name);
   }
-  BuildInput input{ ct, read.bone.labels, nullptr, read.contours, 0.0 };
-  if (input.labels)
-  {
-    input.labels = PutOnGrid(input.labels, ct);
-    input.mask = MaskOfLabel(input.labels, read.bone.label);
-    TurnToOwnOrientation(input);
-  }
+  const BuildInput input = CropToBone(ct, read.bone, read.contours, parameters.plan);
   if (options.tetrahedra)
   {
-    if (input.labels)
-    {
-      input.surface = MeasureLabel(input.labels, read.bone.label).surface;
-    }
     PlanBuild(input, parameters, pipeline, [&session](const Resolution &, IdType tried) {
       session.Print("tiled for about " + std::to_string(tried) + " tetrahedra\n");
     });

@@ -20,10 +20,6 @@ struct BuildInput
   double                surface{ 0.0 }; ///< of the label, mm^2; 0 without a label map
 };
 
-/** Puts the voxels of CT, label map and mask in the bone's own order; for inputs with a mask. */
-void
-TurnToOwnOrientation(BuildInput & input);
-
 /** CT and label map cut down to the bone and the plan's margin, in the bone's own orientation; the CT as it is where
  * `labels` is null. Throws itk::ExceptionObject where the two have not the same grid, the label does not occur, or none
  * of several labels is chosen (\ref VerifyOneBone). */

@@ -28,7 +28,7 @@ LabelImage::Pointer
 Flip(const LabelImage::Pointer & image, const std::array<bool, 3> & axes);
 
 /** The same voxels, not copied, on a grid whose first voxel is at the origin and whose axes are those of space:
- * PlacementOf(image) takes it to its place. Null for null. */
+ * PlacementOf(image) takes it to its place. Brings the image up to date. Null for null. */
 CTImage::Pointer
 OnOwnGrid(const CTImage * image);
 LabelImage::Pointer

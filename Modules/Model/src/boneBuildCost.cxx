@@ -10,9 +10,9 @@ namespace bone
 namespace
 {
 // Fitted to builds of phantoms and clinical bones, of 2,000 to 33,000 tetrahedra; the guide says how well.
-constexpr double SecondsOfBone = 3.0;          // one thread
-constexpr double SecondsOfMillionVoxels = 2.0; // of the bone's box
-constexpr double SecondsOfThousandCells = 0.6;
+constexpr double SecondsOfBone = 1.0;          // one thread
+constexpr double SecondsOfMillionVoxels = 0.6; // of the bone's box
+constexpr double SecondsOfThousandCells = 0.42;
 constexpr double SecondsOfReading = 0.03; // a million voxels of the CT
 constexpr double ParallelShare = 0.4;     // of a bone's seconds
 constexpr double MegabytesOfProgram = 90.0;

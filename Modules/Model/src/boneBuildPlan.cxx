@@ -14,15 +14,6 @@
 
 namespace bone
 {
-void
-TurnToOwnOrientation(BuildInput & input)
-{
-  const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
-  input.ct = Flip(input.ct, flips);
-  input.labels = Flip(input.labels, flips);
-  input.mask = Flip(input.mask, flips);
-}
-
 BuildInput
 CropToBone(const CTImage *             ct,
            const LabelImage *          labels,
@@ -43,7 +34,10 @@ CropToBone(const CTImage *             ct,
   input.ct = Crop(ct, region);
   input.labels = Crop(onGrid, region);
   input.mask = MaskOfLabel(input.labels, plan.label);
-  TurnToOwnOrientation(input);
+  const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
+  input.ct = Flip(input.ct, flips);
+  input.labels = Flip(input.labels, flips);
+  input.mask = Flip(input.mask, flips);
   input.surface = extent.surface;
   return input;
 }

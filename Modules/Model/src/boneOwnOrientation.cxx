@@ -120,6 +120,7 @@ WithoutPlacement(const TImage * image)
   {
     return nullptr;
   }
+  const_cast<TImage *>(image)->Update(); // it may come from a source
   auto own = TImage::New();
   own->Graft(image);
   typename TImage::RegionType region = image->GetLargestPossibleRegion();
