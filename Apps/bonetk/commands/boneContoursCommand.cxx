@@ -103,7 +103,10 @@ RunContours(const ContoursOptions & options, Session & session)
   {
     session.Watch(filter, name);
   }
-  const BuildInput input = CropToBone(ct, read.bone, read.contours, parameters.plan);
+  // From a few slices the bone is followed through all of the CT.
+  const BuildInput input = parameters.contours.followLabel
+                             ? BuildInput{ ct, read.bone.labels, nullptr, read.contours, 0.0 }
+                             : CropToBone(ct, read.bone, read.contours, parameters.plan);
   if (options.tetrahedra)
   {
     PlanBuild(input, parameters, pipeline, [&session](const Resolution &, IdType tried) {

@@ -32,7 +32,14 @@ CropToBone(const CTImage *             ct,
 /** The same of a bone of a label map. Where its box is known, CT and labels are read within it and the plan's margin
  * alone, if they are read by regions (\ref OpenCT, \ref OpenLabelFile). The bone's label is the plan's. */
 BuildInput
-CropToBone(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan);
+CropToBone(const CTImage *             ct,
+           const LabelledBone &        bone,
+           const ContourStack *        contours,
+           const BuildPlanParameters & plan);
+
+/** The same in the CT's order of voxels. */
+BuildInput
+CropInOrder(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan);
 
 /** How far the quality stage may move surfaces, mm: half a pixel of the slices, but no more than keeps the overlap with
  * a label map of large voxels. */

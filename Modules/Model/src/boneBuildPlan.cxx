@@ -14,11 +14,13 @@
 
 namespace bone
 {
+namespace
+{
 BuildInput
-CropToBone(const CTImage *             ct,
-           const LabelImage *          labels,
-           const ContourStack *        contours,
-           const BuildPlanParameters & plan)
+CropParts(const CTImage *             ct,
+          const LabelImage *          labels,
+          const ContourStack *        contours,
+          const BuildPlanParameters & plan)
 {
   BuildInput input;
   input.ct = const_cast<CTImage *>(ct);
@@ -34,26 +36,54 @@ CropToBone(const CTImage *             ct,
   input.ct = Crop(ct, region);
   input.labels = Crop(onGrid, region);
   input.mask = MaskOfLabel(input.labels, plan.label);
-  const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
-  input.ct = Flip(input.ct, flips);
-  input.labels = Flip(input.labels, flips);
-  input.mask = Flip(input.mask, flips);
   input.surface = extent.surface;
   return input;
 }
 
 BuildInput
-CropToBone(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan)
+InOwnOrientation(BuildInput input)
+{
+  if (input.mask)
+  {
+    const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
+    input.ct = Flip(input.ct, flips);
+    input.labels = Flip(input.labels, flips);
+    input.mask = Flip(input.mask, flips);
+  }
+  return input;
+}
+} // namespace
+
+BuildInput
+CropToBone(const CTImage *             ct,
+           const LabelImage *          labels,
+           const ContourStack *        contours,
+           const BuildPlanParameters & plan)
+{
+  return InOwnOrientation(CropParts(ct, labels, contours, plan));
+}
+
+BuildInput
+CropToBone(const CTImage *             ct,
+           const LabelledBone &        bone,
+           const ContourStack *        contours,
+           const BuildPlanParameters & plan)
+{
+  return InOwnOrientation(CropInOrder(ct, bone, contours, plan));
+}
+
+BuildInput
+CropInOrder(const CTImage * ct, const LabelledBone & bone, const ContourStack * contours, BuildPlanParameters plan)
 {
   plan.label = bone.label;
   if (bone.labels.IsNull() || bone.region.GetNumberOfPixels() == 0 || !IsSameGrid(ct, bone.labels))
   {
-    return CropToBone(ct, bone.labels.GetPointer(), contours, plan);
+    return CropParts(ct, bone.labels.GetPointer(), contours, plan);
   }
   const CTImage::RegionType region = GrowRegion(ct, bone.region, plan.cropMargin);
   const CTImage::Pointer    part = Crop(ct, region);
   const LabelImage::Pointer labels = Crop(bone.labels.GetPointer(), region);
-  return CropToBone(part, labels, contours, plan);
+  return CropParts(part, labels, contours, plan);
 }
 
 double
@@ -116,7 +146,7 @@ PlanBuild(const BuildInput &                                      input,
   const BuildPlanParameters & plan = parameters.plan;
   SetBuild(input, parameters, pipeline);
   double surface = input.surface;
-  if (input.labels.IsNull())
+  if (!(surface > 0.0))
   {
     // How large the bone is shows once its contours were followed.
     pipeline.GetSnake()->SetSliceStep(plan.probeStep);
