@@ -11,6 +11,7 @@
 
 #include <itkImageRegionIteratorWithIndex.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -91,6 +92,7 @@ struct Built
 {
   DensityHierarchy<>::ConstPointer hierarchy;
   ContourStack::ConstPointer       contours;
+  std::vector<std::string>         warnings;
 };
 
 Built
@@ -104,7 +106,7 @@ Build(const CTImage * ct, const LabelImage * labels)
   BuildPipeline pipeline(2);
   PlanBuild(CropToBone(ct, labels, nullptr, parameters.plan), parameters, pipeline);
   FinishBuild(parameters.plan, nullptr, pipeline);
-  return { pipeline.GetHierarchy(), pipeline.GetContours() };
+  return { pipeline.GetHierarchy(), pipeline.GetContours(), pipeline.GetWarnings() };
 }
 
 Vector3
@@ -222,5 +224,8 @@ TEST(OwnOrientation, AMirroredBoneGivesTheMirroredModel)
     ASSERT_NO_THROW(built.contours->Verify());
     ASSERT_EQ(built.contours->GetSlices().size(), first.contours->GetSlices().size());
     EXPECT_GT(built.contours->GetNormal().z(), 0.0);
+    // The phantom is cut below: what a person is told is of the CT's space.
+    const std::string end = axes[2] ? "last" : "first";
+    EXPECT_THAT(built.warnings, testing::Contains(testing::HasSubstr("at its " + end + " slice")));
   }
 }
