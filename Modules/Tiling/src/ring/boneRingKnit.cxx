@@ -16,7 +16,8 @@ namespace tiling
 {
 namespace
 {
-constexpr int NumberOfKnits = 6;
+constexpr int    NumberOfKnits = 6;
+constexpr double DepartureWeight = 5.0; // of a mm of the wall's departure against a mm of span
 
 /** The diagonal that cuts the quadrilateral between two spanning edges. */
 enum Diagonal : int
@@ -175,9 +176,14 @@ StepTetrahedra(const Word & lower, const Word & upper, int i, int j, int move, i
 class Knit
 {
 public:
-  Knit(const VertexPool & pool, const TilingMetric & metric, const Word & lower, const Word & upper)
+  Knit(const VertexPool &   pool,
+       const TilingMetric & metric,
+       const WallGuide &    guide,
+       const Word &         lower,
+       const Word &         upper)
     : m_Pool(pool)
     , m_Metric(metric)
+    , m_Guide(guide)
     , m_Lower(lower)
     , m_Upper(upper)
   {}
@@ -221,7 +227,25 @@ public:
       step.volume += volume;
     }
     Describe(i, j, diagonal, move, step);
+    if (move != ChangeDiagonal && OuterMoves(i, j, move))
+    {
+      penalty += DepartureWeight * DepartureAfter(i, j, move);
+    }
     return m_Metric.Evaluate(step) + penalty;
+  }
+
+  /** Whether a move, no change of diagonal, advances an outer walk. */
+  bool
+  OuterMoves(int i, int j, int move) const
+  {
+    return (move == AdvanceLower ? m_Lower.letters[i] : m_Upper.letters[j]) == 0;
+  }
+
+  /** The departure of the wall's edge that such a move leads to. */
+  double
+  DepartureAfter(int i, int j, int move) const
+  {
+    return m_Guide.Departure(m_Lower.a[move == AdvanceLower ? i + 1 : i], m_Upper.a[move == AdvanceUpper ? j + 1 : j]);
   }
 
 private:
@@ -252,8 +276,7 @@ private:
     // The diagonal counts at each move, new or not: else long runs on one side would be cheap.
     if (move != ChangeDiagonal)
     {
-      const bool outerMoves = move == AdvanceLower ? m_Lower.letters[i] == 0 : m_Upper.letters[j] == 0;
-      outerMoves ? edge(a, c) : edge(b, d);
+      OuterMoves(i, j, move) ? edge(a, c) : edge(b, d);
     }
     innerUpper ? edge(a, d) : edge(b, c);
     if (innerUpper)
@@ -270,6 +293,7 @@ private:
 
   const VertexPool &   m_Pool;
   const TilingMetric & m_Metric;
+  const WallGuide &    m_Guide;
   const Word &         m_Lower;
   const Word &         m_Upper;
 };
@@ -477,30 +501,31 @@ RankStarts(const VertexPool & pool, const RingPair & rings, const Merge & inner)
 }
 } // namespace
 
-bool
+RingKnit
 KnitRing(const VertexPool &        pool,
          const RingPair &          rings,
          const Merge &             inner,
          const TilingMetric &      metric,
+         const WallGuide &         guide,
          int                       start,
          int                       region,
          Merge &                   outer,
-         std::vector<TiledTetra> & tetrahedra,
-         bool &                    moreStarts)
+         std::vector<TiledTetra> & tetrahedra)
 {
   const auto starts = RankStarts(pool, rings, inner);
   const int  usable = std::min<int>(static_cast<int>(starts.size()), NumberOfKnits);
-  moreStarts = start + 1 < usable;
+  RingKnit   result;
+  result.moreStarts = start + 1 < usable;
   if (start >= usable)
   {
-    return false;
+    return result;
   }
   // The best starts may be neighbours on the ring; spread the choice over the ranking.
   const Start &  chosen = starts[static_cast<std::size_t>(start) * starts.size() / usable];
   const Word     lower = Unroll(rings.outerLower, rings.innerLower, rings.ringLower, chosen.lower);
   const Word     upper = Unroll(rings.outerUpper, rings.innerUpper, rings.ringUpper, chosen.upper);
   const Corridor corridor = CorridorOf(inner, chosen.wall, WalkSteps(rings.innerLower));
-  const Knit     knit(pool, metric, lower, upper);
+  const Knit     knit(pool, metric, guide, lower, upper);
   Table          table(lower, upper, corridor);
   double         cost = Infinity, otherCost = Infinity;
   auto           path = table.Solve(knit, InnerUpper, cost);
@@ -508,8 +533,9 @@ KnitRing(const VertexPool &        pool,
   int            diagonal = otherCost < cost ? InnerLower : InnerUpper;
   if (std::min(cost, otherCost) == Infinity)
   {
-    return false;
+    return result;
   }
+  result.made = true;
   if (diagonal == InnerLower)
   {
     path = otherPath;
@@ -531,13 +557,14 @@ KnitRing(const VertexPool &        pool,
       diagonal = 1 - diagonal;
       continue;
     }
-    if ((move == AdvanceLower ? lower.letters[i] : upper.letters[j]) == 0)
+    if (knit.OuterMoves(i, j, move))
     {
+      result.departs = result.departs || knit.DepartureAfter(i, j, move) > guide.GetLimit();
       outer.letters.push_back(move);
     }
     (move == AdvanceLower ? i : j) += 1;
   }
-  return true;
+  return result;
 }
 } // namespace tiling
 } // namespace bone

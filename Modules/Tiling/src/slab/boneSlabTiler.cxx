@@ -98,11 +98,13 @@ SlabTiler::KnitFrom(const Section &          lower,
                     const std::vector<int> & regions,
                     int &                    budget)
 {
-  const RingPair rings{ lower.walks[ring], lower.inner[ring], lower.rings[ring],
+  const RingPair  rings{ lower.walks[ring], lower.inner[ring], lower.rings[ring],
                         upper.walks[ring], upper.inner[ring], upper.rings[ring] };
-  const Merge    inner = WithSpurs(m_Pool.plane, lower, upper, ring, wall);
-  bool           more = true;
-  for (int start = 0; more; ++start)
+  const Merge     inner = WithSpurs(m_Pool.plane, lower, upper, ring, wall);
+  const WallGuide guide(m_Pool, rings.outerLower, rings.outerUpper);
+  RingKnit        knit;
+  knit.moreStarts = true;
+  for (int start = 0; knit.moreStarts && !knit.departs; ++start)
   {
     m_Execution.ThrowIfAborted();
     if (budget-- <= 0)
@@ -111,8 +113,9 @@ SlabTiler::KnitFrom(const Section &          lower,
     }
     const std::size_t mark = m_Tetrahedra.size();
     Merge             outer;
-    if (KnitRing(m_Pool, rings, inner, m_Metric, start, RegionOfSlot(regions[ring]), outer, m_Tetrahedra, more) &&
-        (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regions, budget)))
+    knit = KnitRing(m_Pool, rings, inner, m_Metric, guide, start, RegionOfSlot(regions[ring]), outer, m_Tetrahedra);
+    // Another start would have the wall depart no less.
+    if (knit.made && !knit.departs && (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regions, budget)))
     {
       return true;
     }
