@@ -17,7 +17,7 @@ namespace tiling
 namespace
 {
 constexpr int    NumberOfKnits = 6;
-constexpr double DepartureWeight = 5.0; // of a mm of the wall's departure against a mm of span
+constexpr double DepartureWeight = 10.0; // of a mm of the wall's departure against a mm of span
 
 /** The diagonal that cuts the quadrilateral between two spanning edges. */
 enum Diagonal : int

@@ -13,7 +13,7 @@ namespace tiling
 {
 namespace
 {
-constexpr double DepartureShare = 0.1; // of the slices' distance and the contours' mean step
+constexpr double DepartureShare = 0.15; // of the slices' distance and the contours' mean step
 
 Vector3
 InSlice(const Vector2 & q)

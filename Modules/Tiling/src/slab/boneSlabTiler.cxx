@@ -104,7 +104,7 @@ SlabTiler::KnitFrom(const Section &          lower,
   const WallGuide guide(m_Pool, rings.outerLower, rings.outerUpper);
   RingKnit        knit;
   knit.moreStarts = true;
-  for (int start = 0; knit.moreStarts && !knit.departs; ++start)
+  for (int start = 0; knit.moreStarts; ++start)
   {
     m_Execution.ThrowIfAborted();
     if (budget-- <= 0)
@@ -114,7 +114,10 @@ SlabTiler::KnitFrom(const Section &          lower,
     const std::size_t mark = m_Tetrahedra.size();
     Merge             outer;
     knit = KnitRing(m_Pool, rings, inner, m_Metric, guide, start, RegionOfSlot(regions[ring]), outer, m_Tetrahedra);
-    // Another start would have the wall depart no less.
+    if (knit.departs)
+    {
+      budget = 0; // from other starts walls depart no less
+    }
     if (knit.made && !knit.departs && (ring == 0 || KnitFrom(lower, upper, ring - 1, outer, regions, budget)))
     {
       return true;
