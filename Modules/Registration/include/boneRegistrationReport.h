@@ -16,7 +16,7 @@ namespace bone
 {
 /** The result as JSON: `converged`, `quality` ("ok", "suspect", "failed"), `distinctness`, `transform` (4 x 4, rows),
  * `centre` (mm), `covariance` (6 x 6; mm, radians, about the centre, the geometry's axes), `standardDeviations` (mm,
- * degrees), `cost`, `views` (the cost of each), `searches` and `beyondSearch`. */
+ * degrees), `cost`, `views` (the cost of each), `leastDistinctness`, `searches` and `beyondSearch`. */
 nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result);
 
@@ -26,7 +26,7 @@ nlohmann::json
 ReportViewCorrections(const std::vector<ViewCorrection> & views);
 
 /** The same of a deformable registration, `covariance` and `standardDeviations` being the pose's alone; without
- * `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations), `pointDeviation` (`mean`
+ * `leastDistinctness` and `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations), `pointDeviation` (`mean`
  * and `largest` standard deviation of a point's position, mm), `precision` (by which the cost counts against the prior)
  * and `posterior`: `volumeMm3`, `meanDensity` (HU) and `massHuMm3` of the whole bone, each with `mean` and
  * `standardDeviation`, and a list `regions` with the same of each `region`. */

@@ -65,6 +65,7 @@ ResultTable(const nlohmann::json & report)
   AddRow(report, "/mirrored", "atlas mirrored", table);
   AddRow(report, "/cost", "cost", table);
   AddRow(report, "/distinctness", "distinctness", table);
+  AddRow(report, "/leastDistinctness", "least distinctness", table);
   AddRow(report, "/searches", "searches", table);
   AddRow(report, "/centre", "centre of the pose, x y z (mm)", table);
   AddRow(

@@ -202,6 +202,7 @@ nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result)
 {
   nlohmann::json report = ReportPose(result, result.covariance);
+  report["leastDistinctness"] = result.leastDistinctness;
   report["searches"] = result.searches;
   report["beyondSearch"] = result.beyondSearch;
   return report;

@@ -11,6 +11,7 @@
 #include "boneRigidCost.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -68,26 +69,69 @@ RadiusOf(const std::vector<Vector3> & points, const Vector3 & centre)
   return std::sqrt(2.0 / 3.0 * squares / static_cast<double>(points.size()));
 }
 
-/** Cost, distinctness and quality of the pose. */
-void
-Judge(const RigidCost & cost, double radius, const Execution & execution, RigidRegistrationResult & result)
+/** Turns about the principal axes of the points through the centre, as rotation vectors that move the points by 1 mm,
+ * root mean square: columns. */
+Eigen::Matrix3d
+PrincipalTurns(const std::vector<Vector3> & points, const Vector3 & centre)
 {
-  constexpr double       away = 8.0; // mm
-  constexpr double       ofTrue = 0.45;
-  constexpr double       ofWrong = 0.3;
-  std::array<double, 12> costs;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3 & x : points)
+  {
+    spread += (x - centre) * (x - centre).transpose() / static_cast<double>(points.size());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
+  Eigen::Matrix3d                                      turns = eigen.eigenvectors();
+  for (int k = 0; k < 3; ++k)
+  {
+    turns.col(k) /= std::sqrt(spread.trace() - eigen.eigenvalues()[k]);
+  }
+  return turns;
+}
+
+/** Whether a motion of the pose's raises the cost so little that the pose may be one that slides along the edges of
+ * something else. */
+bool
+HasLooseMotion(const RigidRegistrationResult & result)
+{
+  constexpr double ofTrue = 0.28; // of the distinctness
+  return result.costs.size() > 1 && result.leastDistinctness < ofTrue * result.distinctness;
+}
+
+/** Costs, distinctnesses and quality of the pose. */
+void
+Judge(const RigidCost &         cost,
+      double                    radius,
+      const Eigen::Matrix3d &   principalTurns,
+      const Execution &         execution,
+      RigidRegistrationResult & result)
+{
+  constexpr double     away = 8.0; // mm
+  constexpr double     ofTrue = 0.45;
+  constexpr double     ofWrong = 0.3;
+  std::vector<Vector6> motions(9, Vector6::Zero()); // translations, turns about the geometry's and the principal axes
+  for (int k = 0; k < 3; ++k)
+  {
+    motions[k][k] = away;
+    motions[3 + k][3 + k] = away / radius;
+    motions[6 + k].tail<3>() = away * principalTurns.col(k);
+  }
+  std::vector<double> costs(2 * motions.size());
   execution.Silent().For(costs.size(), [&](std::size_t k) {
-    Vector6 step = Vector6::Zero();
-    step[static_cast<Eigen::Index>(k / 2)] = (k % 2 == 0 ? away : -away) / (k < 6 ? 1.0 : radius);
-    costs[k] = cost.Evaluate(result.pose.Moved(step), execution.Silent());
+    costs[k] = cost.Evaluate(result.pose.Moved((k % 2 == 0 ? 1.0 : -1.0) * motions[k / 2]), execution.Silent());
   });
   result.cost = cost.Evaluate(result.pose, execution.Silent(), &result.costs);
-  const double mean = std::accumulate(costs.begin(), costs.end(), 0.0) / static_cast<double>(costs.size());
-  result.distinctness = result.cost > 0.0 ? mean / result.cost - 1.0 : std::numeric_limits<double>::max();
+  const auto   turns = costs.begin() + 6, principal = costs.begin() + 12;
+  const double mean = std::accumulate(costs.begin(), principal, 0.0) / 12.0;
+  const double least = std::min(*std::min_element(costs.begin(), turns), *std::min_element(principal, costs.end()));
+  const auto   rise = [&result](double there) {
+    return result.cost > 0.0 ? there / result.cost - 1.0 : std::numeric_limits<double>::max();
+  };
+  result.distinctness = rise(mean);
+  result.leastDistinctness = rise(least);
   result.quality = result.distinctness >= ofTrue    ? RegistrationQuality::Ok
                    : result.distinctness >= ofWrong ? RegistrationQuality::Suspect
                                                     : RegistrationQuality::Failed;
-  if (result.beyondSearch)
+  if (result.beyondSearch || HasLooseMotion(result))
   {
     result.quality = std::max(result.quality, RegistrationQuality::Suspect);
   }
@@ -139,6 +183,7 @@ public:
     , m_Means(WithMeanDensities(levels[m_Resolutions.front().level]))
   {
     m_Radius = RadiusOf(levels.front().points, m_Initial.centre);
+    m_PrincipalTurns = PrincipalTurns(levels.front().points, m_Initial.centre);
     // A start's turns about three axes add up to more than the largest about one.
     constexpr double beyond = 1.25;
     m_Box << Vector3::Constant(beyond * m_P.searchTranslation),
@@ -173,7 +218,7 @@ public:
         best = result;
       }
       best.searches = search + 1;
-      if (best.quality == RegistrationQuality::Suspect && !best.beyondSearch &&
+      if (best.quality == RegistrationQuality::Suspect && !best.beyondSearch && !HasLooseMotion(best) &&
           this->CountNear(best.pose, found) >= enough)
       {
         best.quality = RegistrationQuality::Ok;
@@ -281,7 +326,7 @@ private:
       this->Descend(*m_Costs[s], result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
     }
     result.beyondSearch = this->IsBeyondSearch(result.pose);
-    Judge(*m_Costs.back(), m_Radius, execution, result);
+    Judge(*m_Costs.back(), m_Radius, m_PrincipalTurns, execution, result);
     return result;
   }
 
@@ -325,6 +370,7 @@ private:
   std::vector<Resolution>                                m_Resolutions;
   MeshArrays                                             m_Means;
   double                                                 m_Radius{ 1.0 };
+  Eigen::Matrix3d                                        m_PrincipalTurns;
   Vector6                                                m_Box;
   bool                                                   m_IsSearched{ false };
   std::vector<std::unique_ptr<const ProjectedLevel>>     m_Levels;
@@ -341,7 +387,8 @@ JudgePose(const MeshArrays &                  model,
 {
   const ProjectedLevel level(model, execution.Silent());
   const auto           cost = MakeCost(parameters, views, parameters.pixels, level);
-  Judge(*cost, RadiusOf(model.points, result.pose.centre), execution, result);
+  const Vector3 &      centre = result.pose.centre;
+  Judge(*cost, RadiusOf(model.points, centre), PrincipalTurns(model.points, centre), execution, result);
 }
 
 RigidRegistrationResult

@@ -194,6 +194,51 @@ TEST(RigidRadiographRegistration, AnXRayWithoutTheBoneIsNoSuccess)
   EXPECT_EQ(registration->GetResult().searches, 2);
 }
 
+/** Quality and distinctnesses of the pose that a body has in its X-rays. */
+RigidRegistrationResult
+Judged(const MeshArrays & body, std::vector<RadiographView> views)
+{
+  RigidRegistrationResult   result;
+  RigidRadiographParameters parameters;
+  parameters.pixels = 96;
+  result.pose = PoseOf(0, 0, 0, 0, 0, 0);
+  JudgePose(body, views, parameters, Execution(), result);
+  return result;
+}
+
+TEST(RigidRadiographRegistration, APoseThatAMotionHardlyChangesIsSuspect)
+{
+  const RigidPose still = PoseOf(0, 0, 0, 0, 0, 0);
+  MeshArrays      round = BallMesh(8, Vector3::Zero(), 1.0); // a body of revolution about z
+  for (Vector3 & p : round.points)
+  {
+    p = Vector3(10, 20, 30) + Vector3(16, 16, 40).cwiseProduct(p);
+  }
+  round.maximumDegree = 0;
+  round.degree.assign(round.tetrahedra.size(), 0);
+  round.coefficients.assign(round.tetrahedra.size(), 600.0);
+  // The X-rays show something else too, as a cost of nothing is distinct from anything.
+  auto views = TwoXRays(round, still);
+  for (RadiographView & view : views)
+  {
+    const auto other = XRayOf(Body(8), view.view, PoseOf(4, 8, 12, 0.4, 0.2, 0.3));
+    for (std::size_t k = 0; k < view.values.size(); ++k)
+    {
+      view.values[k] += 0.3F * other.values[k];
+    }
+  }
+  const auto two = Judged(round, views), one = Judged(round, { views[0] });
+  EXPECT_GT(two.distinctness, 0.5);
+  EXPECT_LT(two.leastDistinctness, 0.1);
+  EXPECT_EQ(two.quality, RegistrationQuality::Suspect);
+  // One view never holds its depth: it is not judged by that.
+  EXPECT_LT(one.leastDistinctness, 0.28 * one.distinctness);
+  EXPECT_EQ(one.quality, RegistrationQuality::Ok);
+  const auto irregular = Judged(Body(12), TwoXRays(Body(12), still));
+  EXPECT_GT(irregular.leastDistinctness, 0.28 * irregular.distinctness);
+  EXPECT_EQ(irregular.quality, RegistrationQuality::Ok);
+}
+
 TEST(RigidRadiographRegistration, ABoneThatNoViewShowsIsNoSuccess)
 {
   auto registration = MakeRegistration(Truth);
