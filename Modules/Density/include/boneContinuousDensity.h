@@ -41,7 +41,8 @@ MakeDensityContinuous(MeshArrays &      mesh,
  * spline is known by its value and gradient at each vertex of a region and by the two derivatives across each edge
  * at its middle: 4 V + 2 E free coefficients a region, fewer than the continuous cubics of `mesh` have. Cubic
  * polynomials are reproduced. It is continuous to rounding, however far the iterations go. Conjugate gradients as in
- * MakeDensityContinuous, with the tetrahedra's own mass matrices (13 kB a tetrahedron).
+ * MakeDensityContinuous, with a
+ * mass matrix a tetrahedron (6 kB each).
  *
  * Throws std::invalid_argument where the density or the mesh does not suit. The result does not depend on the number of
  * threads. Progress is by iterations. Source: see SplitWorseyFarin. */

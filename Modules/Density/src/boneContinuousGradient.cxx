@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace bone
@@ -18,75 +19,81 @@ namespace
 {
 using Element = WorseyFarinElement;
 
-/** Numbers the nodal values of the elements: those of a vertex or an edge are shared within a region. */
-SharedCoefficients
-ShareNodes(const MeshArrays & mesh)
+/** The nodal values of one vertex or edge in an element. */
+struct NodeBlock
 {
-  // Degree 2 has one coefficient a vertex and one an edge.
-  const SharedCoefficients places = ShareCoefficients(mesh, 2);
-  const auto &             exponents = BernsteinExponents(2);
-  const std::size_t        cells = mesh.tetrahedra.size();
-  std::vector<std::size_t> first(places.size + 1, 0);
-  for (std::size_t i = 0; i < places.size; ++i)
+  int first;
+  int size;
+};
+
+/** The vertex or edge of each coefficient of degree 2, which has one for each. */
+std::vector<NodeBlock>
+NodeBlocks()
+{
+  std::vector<NodeBlock> blocks;
+  for (const auto & e : BernsteinExponents(2))
   {
-    const auto & e = exponents[places.uses[places.start[i]] % exponents.size()];
-    first[i + 1] = first[i] + (*std::max_element(e.begin(), e.end()) == 2 ? 4 : 2);
+    const auto in = [&e](const std::array<int, 2> & edge) { return e[edge[0]] == 1 && e[edge[1]] == 1; };
+    const auto edge = std::find_if(TetraEdges.begin(), TetraEdges.end(), in) - TetraEdges.begin();
+    const auto vertex = std::find(e.begin(), e.end(), 2) - e.begin();
+    blocks.push_back(vertex < 4 ? NodeBlock{ static_cast<int>(4 * vertex), 4 }
+                                : NodeBlock{ static_cast<int>(16 + 2 * edge), 2 });
   }
-  SharedCoefficients nodes;
-  nodes.size = first.back();
-  nodes.global.resize(cells * Element::NodeCount);
-  for (std::size_t t = 0; t < cells; ++t)
-  {
-    std::uint32_t * node = &nodes.global[t * Element::NodeCount];
-    const auto      number = [&](int v, int w, int count) {
-      std::array<int, 4> e{};
-      ++e[v];
-      ++e[w];
-      const std::size_t place = places.global[t * exponents.size() + BernsteinIndex(2, e[0], e[1], e[2])];
-      for (int i = 0; i < count; ++i)
-      {
-        *node++ = static_cast<std::uint32_t>(first[place] + i);
-      }
-    };
-    for (int v = 0; v < 4; ++v)
-    {
-      number(v, v, 4);
-    }
-    for (const auto & edge : TetraEdges)
-    {
-      number(edge[0], edge[1], 2);
-    }
-  }
-  nodes.ListUses();
-  return nodes;
+  return blocks;
 }
 
-/** The assembled mass matrix of the elements and its preconditioner. */
+/** Which nodal values elements share: those of a vertex or an edge, within a region. */
+struct SharedNodes
+{
+  explicit SharedNodes(const MeshArrays & mesh)
+    : blocks(NodeBlocks())
+    , places(ShareCoefficients(mesh, 2))
+    , first(places.size + 1, 0)
+  {
+    const std::size_t count = blocks.size();
+    for (std::size_t i = 0; i < places.size; ++i)
+    {
+      first[i + 1] = first[i] + blocks[places.uses[places.start[i]] % count].size;
+    }
+    values.size = first.back();
+    values.global.resize(mesh.tetrahedra.size() * Element::NodeCount);
+    for (std::size_t use = 0; use < places.global.size(); ++use)
+    {
+      const NodeBlock & block = blocks[use % count];
+      for (int n = 0; n < block.size; ++n)
+      {
+        values.global[use / count * Element::NodeCount + block.first + n] =
+          static_cast<std::uint32_t>(first[places.global[use]] + n);
+      }
+    }
+    values.ListUses();
+  }
+
+  std::vector<NodeBlock>   blocks;
+  SharedCoefficients       places; // vertices and edges
+  std::vector<std::size_t> first;  // of each of them, in values
+  SharedCoefficients       values;
+};
+
+/** The assembled mass matrix of the elements; its diagonal blocks of vertices and edges precondition it. */
 class ElementSystem : public SharedSystem
 {
 public:
-  ElementSystem(const MeshArrays &         mesh,
-                const MeshArrays &         split,
-                const SharedCoefficients & nodes,
-                const Execution &          execution)
-    : SharedSystem(mesh, nodes, Element::NodeCount, execution)
+  ElementSystem(const MeshArrays &  mesh,
+                const MeshArrays &  split,
+                const SharedNodes & nodes,
+                const Execution &   execution)
+    : SharedSystem(mesh, nodes.values, Element::NodeCount, execution)
     , m_Split(split)
     , m_Tetrahedra(mesh.tetrahedra)
+    , m_Nodes(nodes)
     , m_Mass(m_Cells)
-    , m_Inverse(m_Cells)
+    , m_Inverses(nodes.places.size)
   {
-    for (const double volume : m_Volume)
-    {
-      m_Scale += volume / static_cast<double>(m_Cells);
-    }
-    m_Scale = std::cbrt(m_Scale);
+    m_Scale = std::cbrt(std::accumulate(m_Volume.begin(), m_Volume.end(), 0.0) / static_cast<double>(m_Cells));
+    this->ForCells([this](std::size_t t) { m_Mass[t] = this->MakeElement(t).Mass(); });
     m_Execution.For(
-      m_Cells,
-      [this](std::size_t t) {
-        m_Mass[t] = this->MakeElement(t).Mass();
-        m_Inverse[t] = m_Mass[t].llt().solve(Element::NodeMatrix::Identity());
-      },
-      BlockSize);
+      m_Inverses.size(), [this](std::size_t i) { this->InvertBlock(i); }, BlockSize);
   }
 
   Element
@@ -98,47 +105,44 @@ public:
   Vector
   RightSide()
   {
-    m_Execution.For(
-      m_Cells,
-      [this](std::size_t t) {
-        this->Local(t) = this->MakeElement(t).Moments(&m_Split.coefficients[t * WorseyFarinCells * BernsteinCount(3)]);
-      },
-      BlockSize);
+    this->ForCells([this](std::size_t t) {
+      this->Local(t) = this->MakeElement(t).Moments(&m_Split.coefficients[t * WorseyFarinCells * BernsteinCount(3)]);
+    });
     return this->Assemble();
   }
 
-  /** The mean of what the elements are nearest to on their own, after RightSide(). */
+  /** After RightSide(): the mean of what the elements are nearest to on their own, which is the answer where that is
+   * such a spline. */
   Vector
   FirstGuess()
   {
-    m_Execution.For(
-      m_Cells, [this](std::size_t t) { this->Local(t) = (m_Inverse[t] * this->Local(t)).eval(); }, BlockSize);
+    this->ForCells([this](std::size_t t) { this->Local(t) = m_Mass[t].llt().solve(this->Local(t)).eval(); });
     return this->MeanOf(m_Local.data());
   }
 
   Vector
   Apply(const Vector & x) override
   {
-    m_Execution.For(
-      m_Cells, [&](std::size_t t) { this->Local(t).noalias() = m_Mass[t] * this->Gather(t, x); }, BlockSize);
+    this->ForCells([&](std::size_t t) { this->Local(t).noalias() = m_Mass[t] * this->NodesOf(t, x); });
     return this->Assemble();
   }
 
   Vector
   Precondition(const Vector & r) override
   {
-    const Vector weighted = r.cwiseProduct(Eigen::Map<const Vector>(m_Weight.data(), r.size()));
+    Vector z(r.size());
     m_Execution.For(
-      m_Cells,
-      [&](std::size_t t) {
-        this->Local(t).noalias() = m_Volume[t] * m_Volume[t] * (m_Inverse[t] * this->Gather(t, weighted));
+      m_Inverses.size(),
+      [&](std::size_t i) {
+        const std::size_t first = m_Nodes.first[i], size = m_Nodes.first[i + 1] - first;
+        z.segment(first, size).noalias() = m_Inverses[i].topLeftCorner(size, size) * r.segment(first, size);
       },
-      BlockSize);
-    return this->Assemble().cwiseProduct(Eigen::Map<const Vector>(m_Weight.data(), r.size()));
+      ChunkSize);
+    return z;
   }
 
   Element::NodeVector
-  Gather(std::size_t t, const Vector & x) const
+  NodesOf(std::size_t t, const Vector & x) const
   {
     Element::NodeVector nodes;
     for (int n = 0; n < Element::NodeCount; ++n)
@@ -149,17 +153,38 @@ public:
   }
 
 private:
+  template <typename TBody>
+  void
+  ForCells(const TBody & body) const
+  {
+    m_Execution.For(m_Cells, body, BlockSize);
+  }
+
   Eigen::Map<Element::NodeVector>
   Local(std::size_t t)
   {
     return Eigen::Map<Element::NodeVector>(&m_Local[t * Element::NodeCount]);
   }
 
+  void
+  InvertBlock(std::size_t i)
+  {
+    const std::size_t size = m_Nodes.first[i + 1] - m_Nodes.first[i], count = m_Nodes.blocks.size();
+    Eigen::Matrix4d   sum = Eigen::Matrix4d::Identity();
+    sum.topLeftCorner(size, size).setZero();
+    m_Nodes.places.ForUses(i, [&](std::size_t use) {
+      const int first = m_Nodes.blocks[use % count].first;
+      sum.topLeftCorner(size, size) += m_Mass[use / count].block(first, first, size, size);
+    });
+    m_Inverses[i] = sum.inverse();
+  }
+
   const MeshArrays &               m_Split;
   const std::vector<Id4> &         m_Tetrahedra;
+  const SharedNodes &              m_Nodes;
   double                           m_Scale{ 0.0 };
   std::vector<Element::NodeMatrix> m_Mass;
-  std::vector<Element::NodeMatrix> m_Inverse;
+  std::vector<Eigen::Matrix4d>     m_Inverses; // an edge's is the upper left corner
 };
 } // namespace
 
@@ -175,14 +200,14 @@ MakeGradientContinuous(const MeshArrays & mesh,
   {
     throw std::invalid_argument("A density with a continuous gradient needs degree 3 in all parts of a split mesh.");
   }
-  const SharedCoefficients nodes = ShareNodes(mesh);
-  ElementSystem            system(mesh, split, nodes, execution.Silent());
-  const auto               right = system.RightSide();
-  auto                     x = system.FirstGuess();
-  const auto               report = system.Solve(right, x, tolerance, maximumIterations, execution);
-  const auto &             places = Element::Places();
+  const SharedNodes nodes(mesh);
+  ElementSystem     system(mesh, split, nodes, execution.Silent());
+  const auto        right = system.RightSide();
+  auto              x = system.FirstGuess();
+  const auto        report = system.Solve(right, x, tolerance, maximumIterations, execution);
+  const auto &      places = Element::Places();
   execution.Silent().For(mesh.tetrahedra.size(), [&](std::size_t t) {
-    const Element::ControlVector controls = system.MakeElement(t).Controls() * system.Gather(t, x);
+    const Element::ControlVector controls = system.MakeElement(t).Controls() * system.NodesOf(t, x);
     double *                     c = &split.coefficients[t * WorseyFarinCells * BernsteinCount(3)];
     for (const auto & part : places)
     {

@@ -160,7 +160,6 @@ class ContinuousGradientOfMesh : public testing::TestWithParam<unsigned>
 TEST_P(ContinuousGradientOfMesh, HasNoJumpsWithinRegionsAndKeepsThemBetween)
 {
   const Jumps jumps(RandomSpline(RandomBlock(GetParam()), GetParam()));
-  RecordProperty("valueJump", std::to_string(jumps.valueWithin));
   std::cout << "jumps within regions: " << jumps.valueWithin << " HU, " << jumps.gradientWithin << " HU/mm\n";
   EXPECT_LE(jumps.valueWithin, 1e-9);
   EXPECT_LE(jumps.gradientWithin, 1e-9);
@@ -247,7 +246,7 @@ TEST(ContinuousGradient, IsTheNearestSplineWithAContinuousGradient)
   MeshArrays after = before;
   const auto report = MakeGradientContinuous(mesh, after, Execution(), 1e-11);
   EXPECT_LE(report.residual, 1e-11);
-  EXPECT_LT(report.iterations, 100);
+  EXPECT_LT(report.iterations, 150);
   // What is left is orthogonal to every such spline, here to another.
   const auto moment = [&](const MeshArrays & with) {
     double sum = 0;
