@@ -44,22 +44,10 @@ DensityFitFilter<TImage, TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
   this->VerifyParameters();
-  if (m_Parameters.continuous && m_Parameters.maximumError > 0)
+  const std::string conflict = FindConflict(m_Parameters);
+  if (!conflict.empty())
   {
-    itkExceptionMacro("A continuous density has one degree: set MaximumError to 0, or turn Continuous off.");
-  }
-  if (m_Parameters.continuous && m_Parameters.degree < 1)
-  {
-    itkExceptionMacro("A continuous density needs Degree 1 or more: raise it, or turn Continuous off.");
-  }
-  if (m_Parameters.continuousGradient && m_Parameters.maximumError > 0)
-  {
-    itkExceptionMacro("A continuous gradient needs one degree: set MaximumError to 0, or turn ContinuousGradient off.");
-  }
-  if (m_Parameters.continuousGradient && m_Parameters.degree != 3)
-  {
-    itkExceptionMacro("A density with a continuous gradient has Degree 3, not "
-                      << m_Parameters.degree << ": set it to 3, or turn ContinuousGradient off.");
+    itkExceptionMacro("" << conflict << '.');
   }
 }
 

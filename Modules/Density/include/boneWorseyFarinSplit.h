@@ -37,7 +37,7 @@ IncentreCoordinates(const MeshArrays & mesh, const Id4 & tetra);
 
 /** The mesh with every tetrahedron split into twelve, on which C1 cubic splines have a local basis (Worsey and Farin,
  * Constructive Approximation 3:99-110, 1987, doi:10.1007/BF01890556; Lai and Schumaker, Spline Functions on
- * Triangulations, 2007, sections 16.7 and 18.4, doi:10.1017/CBO9780511721588).
+ * Triangulations, 2007, chapters 16 and 18, doi:10.1017/CBO9780511721588).
  *
  * A tetrahedron is split at its incentre, and each face at a point inside it: where the line between the incentres of
  * its two tetrahedra meets it, which they see alike, and at the boundary where the inscribed sphere touches it. Thus
