@@ -274,7 +274,7 @@ changes with the mesh (a local basis for every mesh takes degree 9). A penalty o
 the spline becomes one of those few: the error rises before the jumps are gone. Quadratics on the split into 24 (Worsey and Piper)
 need split points of edges in line with incentres, which meshes of bones do not have.
 
-{smooth_spaces.text()}
+{remembered(("smooth_spaces",), lambda: json.dumps(smooth_spaces.text()))}
 ### Hip bone
 
 Meshes of the hip bone, and what each density costs and gives. Jumps are the largest across faces within regions; "of its length" is
