@@ -110,6 +110,32 @@ TEST_F(BuildPipelineTest, ChangedContourSpacingRunsResamplingAndWhatFollows)
                 "resample", "medial axis", "tiling", "quality", "fit", "collapse", "radiograph L1", "radiograph L2"));
 }
 
+TEST_F(BuildPipelineTest, SplinesLeaveTheHierarchyAsItIs)
+{
+  m_Pipeline.Update();
+  EXPECT_EQ(m_Pipeline.GetSpline(0), nullptr);
+  bone::BuildParameters parameters;
+  m_Pipeline.GetParameters(parameters);
+  parameters.fit.degree = 3;
+  m_Pipeline.SetParameters(parameters);
+  m_Pipeline.Update();
+  m_Clock.Reset();
+  parameters.fit.continuousGradient = true;
+  m_Pipeline.SetParameters(parameters);
+  m_Pipeline.Update();
+  EXPECT_THAT(Executed(), testing::IsEmpty());
+  for (std::size_t level = 0; level < m_Pipeline.GetNumberOfLevels(); ++level)
+  {
+    const auto * mesh = m_Pipeline.GetHierarchy()->GetMesh(level);
+    const auto   spline = m_Pipeline.GetSpline(level);
+    EXPECT_EQ(spline->GetNumberOfTetrahedra(), 12 * mesh->GetNumberOfTetrahedra());
+    EXPECT_LT(m_Pipeline.GetSplineFit(level)->GetNumberOfFreeCoefficients(), 10 * mesh->GetNumberOfTetrahedra());
+  }
+  bone::BuildParameters kept;
+  m_Pipeline.GetParameters(kept);
+  EXPECT_TRUE(kept.fit == parameters.fit);
+}
+
 TEST_F(BuildPipelineTest, ChangedGeometryRunsRadiographsOnly)
 {
   m_Pipeline.Update();

@@ -2,6 +2,7 @@
 """The commands one after the other on a small phantom, the example programs, and what `info` and `validate` say."""
 import json
 import os
+import pathlib
 import re
 import subprocess
 
@@ -34,10 +35,11 @@ class Commands(TestCase):
                     says="--labels")
         self.succeed("fit", "ct.nii.gz", "s.vtu", "--degree", 2, "-o", "d.vtu")
         self.succeed("fit", "ct.nii.gz", "d.vtu", "--degree", 1, "--continuous", "-o", "d1.vtu")
+        self.succeed("fit", "ct.nii.gz", "d.vtu", "--continuous-gradient", "-o", "c1.vtu")
         self.succeed("simplify", "d.vtu", "--tetrahedra", 2500, 1500, "-o", "h")
         self.assertEqual(sorted(f for f in os.listdir() if f.startswith("h")),
                          ["h.hierarchy.json", "h_L1.vtu", "h_L2.vtu", "h_L3.vtu"])
-        for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "sl.vtu", "d.vtu", "d1.vtu", "h_L2.vtu", "h_L3.vtu"):
+        for mesh in ("m.vtu", "m2.vtu", "smart.vtu", "enhanced.vtu", "s.vtu", "sl.vtu", "d.vtu", "d1.vtu", "c1.vtu", "h_L2.vtu", "h_L3.vtu"):
             out, _ = self.succeed("validate", mesh)
             self.assertNotIn("FAILED", out, mesh)
         levels = read_json("h.hierarchy.json")["levels"]
@@ -107,6 +109,8 @@ class Commands(TestCase):
         self.assertGreater(len(adaptive["tetrahedraByDegree"]), 2)
         self.assertEqual(sum(adaptive["tetrahedraByDegree"].values()), adaptive["tetrahedra"])
         self.refuse("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--max-error", 5, "--continuous", "-o", "x.vtu", code=2)
+        self.refuse("fit", "ct.nii.gz", "m.vtu", "--max-error", 5, "--continuous-gradient", "-o", "x.vtu", code=2)
+        self.refuse("fit", "ct.nii.gz", "m.vtu", "--degree", 2, "--continuous-gradient", "-o", "x.vtu", code=2, says="degree 3")
 
         write_json({"references": [{"name": "rod", "density": 0, "value": 0}, {"name": "cortex", "density": 1200, "label": 1},
                                    {"name": "soft tissue", "density": 40, "from": [-24, 0, -60], "to": [-24, 0, -66],
@@ -131,6 +135,30 @@ class Commands(TestCase):
                      "p.csv")
         with open("p.csv") as file:
             self.assertEqual(len(file.readlines()), 62)
+
+    def radiograph(self, model):
+        self.succeed("drr", model, "--geometry", "m/drr_geometry.json", "-o", "r.nii.gz")
+        return numpy.asarray(nibabel.load("r.nii.gz").dataobj)
+
+    def test_continuous_gradient(self):
+        """Every level gets a spline beside it, an ordinary model; levels are the same as without."""
+        phantom(every=2)
+        self.refuse("build", "ct.nii.gz", "--labels", "l.nii.gz", "--continuous-gradient", "--degree", 2, "-o", "x", code=2,
+                    says="degree 3")
+        build = ["build", "ct.nii.gz", "--labels", "l.nii.gz", "--tetrahedra", 2000, "--levels", 1000, "--no-page", "-o", "m"]
+        self.succeed(*build)
+        levels = [pathlib.Path(f"m/model_L{n}.vtu").read_bytes() for n in (1, 2)]
+        self.succeed(*build, "--continuous-gradient")
+        report = read_json("m/report.json")
+        for n, level in enumerate(report["levels"], 1):
+            self.assertEqual(pathlib.Path(f"m/model_L{n}.vtu").read_bytes(), levels[n - 1])
+            self.assertEqual(level["spline"]["tetrahedra"], 12 * level["tetrahedra"])
+            self.assertLess(level["spline"]["densityError"]["percentOfRange"], 5)
+            self.assertNotIn("FAILED", self.succeed("validate", f"m/spline_L{n}.vtu")[0])
+            drr, other = (self.radiograph(f"m/{name}_L{n}.vtu") for name in ("spline", "model"))
+            self.assertLess(numpy.abs(drr - other).mean(), 0.02 * other.max())
+        self.succeed(*build)
+        self.assertFalse([f for f in os.listdir("m") if f.startswith("spline")])
 
     def test_compact(self):
         """Compact files are smaller, are read by every command, and are as near to the exact ones as they say."""

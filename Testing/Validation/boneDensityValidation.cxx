@@ -6,9 +6,10 @@
 //
 //   boneDensityValidation MESH.vtu CT LABELS LABEL [name=value ...]
 //
-// Names: degrees=0,1,...; continuous, interpolator (linear, bspline), voxelweight, tikhonov, limit, margin, maxerror:
-// the fit's parameters; truth=IMAGE: an image to compare with in place of the CT; repeat=N: runs of which the fastest
-// counts.
+// Names: degrees=0,1,...; continuous, gradient (0 or 1: continuous gradient), interpolator (linear, bspline),
+// voxelweight, tikhonov, limit, margin, maxerror: the fit's parameters; truth=IMAGE: an image to compare with in place
+// of the CT; repeat=N: runs of which the fastest counts; joins=1: the jumps across faces within regions, and the error
+// of the gradient.
 
 #include "boneImageIO.h"
 #include "boneMeshIO.h"
@@ -112,6 +113,94 @@ CutPlaneError(const MeshArrays & mesh, const Bone & bone)
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+/** Largest jumps of the value and the gradient across faces within regions, at six places of each. */
+Json
+Jumps(const MeshArrays & mesh)
+{
+  const int         n = mesh.maximumDegree;
+  const std::size_t count = BernsteinCount(n);
+  const auto        neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  double            value = 0, gradient = 0, relative = 0;
+  const auto        gradientAt = [&](std::size_t t, const Barycentric & mu) {
+    const Id4 &  v = mesh.tetrahedra[t];
+    const auto & p = mesh.points;
+    return BernsteinGradient(n, &mesh.coefficients[t * count], mu, p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
+  };
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+  {
+    for (int face = 0; face < 4; ++face)
+    {
+      const IdType other = neighbors[t][face];
+      if (other <= static_cast<IdType>(t) || mesh.region[other] != mesh.region[t])
+      {
+        continue;
+      }
+      for (const auto & e : BernsteinExponents(2))
+      {
+        if (e[face] > 0)
+        {
+          continue;
+        }
+        const Barycentric here = Barycentric(e[0], e[1], e[2], e[3]) / 2;
+        Barycentric       there = Barycentric::Zero();
+        for (int i = 0; i < 4; ++i)
+        {
+          const Id4 & w = mesh.tetrahedra[other];
+          if (i != face)
+          {
+            there[std::find(w.begin(), w.end(), mesh.tetrahedra[t][i]) - w.begin()] = here[i];
+          }
+        }
+        const double jump = BernsteinValue(n, &mesh.coefficients[t * count], here) -
+                            BernsteinValue(n, &mesh.coefficients[other * count], there);
+        const Vector3 slope = gradientAt(t, here);
+        const double  turn = (slope - gradientAt(other, there)).norm();
+        value = std::max(value, std::abs(jump));
+        gradient = std::max(gradient, turn);
+        relative = std::max(relative, turn / (1 + slope.norm()));
+      }
+    }
+  }
+  return { { "value", value }, { "gradient", gradient }, { "relative", relative } };
+}
+
+/** Mean length of the difference between the density's gradient and central differences of the image, HU/mm, at every
+ * seventh voxel whose neighbours lie in its region. */
+double
+GradientError(const MeshArrays & mesh, const Bone & bone)
+{
+  const TetraLocator                  locator(mesh);
+  const auto &                        size = bone.grid.size;
+  const std::array<std::ptrdiff_t, 3> stride = { 1, size[0], static_cast<std::ptrdiff_t>(size[0]) * size[1] };
+  const float *                       values = bone.truth->GetBufferPointer();
+  double                              sum = 0;
+  std::size_t                         count = 0, seen = 0;
+  CellLocation                        place;
+  for (std::ptrdiff_t v = stride[2]; v + stride[2] < static_cast<std::ptrdiff_t>(bone.region.size()); ++v)
+  {
+    const auto alike = [&](std::ptrdiff_t step) {
+      return bone.region[v - step] == bone.region[v] && bone.region[v + step] == bone.region[v];
+    };
+    if (bone.region[v] < 0 || !std::all_of(stride.begin(), stride.end(), alike) || seen++ % 7 != 0)
+    {
+      continue;
+    }
+    const Vector3 index(v % stride[1], v / stride[1] % size[1], v / stride[2]);
+    place = locator.Find(bone.grid.origin + bone.grid.axes * index, place.cell);
+    if (place.Found())
+    {
+      Vector3 differences;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        differences[axis] = (values[v + stride[axis]] - values[v - stride[axis]]) / 2;
+      }
+      sum += (DensityGradientAt(mesh, place) - bone.grid.axes.inverse().transpose() * differences).norm();
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
 std::vector<int>
 RegionsOfVoxels(MeshArrays mesh, const VoxelGrid & grid)
 {
@@ -142,6 +231,7 @@ MakeFit(DensityMesh<double> * mesh, const Bone & bone, const Options & options, 
   fit->SetImage(bone.ct);
   fit->SetDegree(degree);
   fit->SetContinuous(Number(options, "continuous", 0) > 0);
+  fit->SetContinuousGradient(Number(options, "gradient", 0) > 0);
   fit->SetVoxelWeight(Number(options, "voxelweight", fit->GetVoxelWeight()));
   fit->SetTikhonov(Number(options, "tikhonov", fit->GetTikhonov()));
   fit->SetOvershootLimit(Number(options, "limit", fit->GetOvershootLimit()));
@@ -201,6 +291,11 @@ Measure(DensityMesh<double> * mesh, const Bone & bone, const Options & options, 
   for (const auto & [d, count] : degrees)
   {
     entry["degrees"][std::to_string(d)] = count;
+  }
+  if (Number(options, "joins", 0) > 0)
+  {
+    entry["jumps"] = Jumps(fitted);
+    entry["gradientError"] = GradientError(fitted, bone);
   }
   if (bone.truth == bone.ct)
   {

@@ -3,7 +3,8 @@
 
 Builds the models (or takes those built before: MODEL=folder of the hip bone's, PHANTOM=folder of the phantom's), fits every
 degree with boneDensityValidation, checks degrees 0 to 6 with check_mesh.py where CHECK names it, and writes
-Documentation/validation/density.md with density_phantom.png (needs gnuplot). Environment: BONETK, BONETK_DATA,
+Documentation/validation/density.md with density_phantom.png (needs gnuplot). Models lie in the folder WORK, where that is
+named, and stay there. Environment: BONETK, BONETK_DATA,
 BONETK_VALIDATION (boneDensityValidation), BONETK_BENCHMARKS (boneDensityBenchmarks; without it there is no table of speed).
 
     BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneDensityValidation \
@@ -21,6 +22,7 @@ import tempfile
 import nibabel
 import numpy
 
+import smooth_spaces
 from report import made_by
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -189,6 +191,105 @@ floats), 18 a tetrahedron (four ids of 4, degree and region of 1) and 4 a coeffi
     return text
 
 
+METHODS = {"each tetrahedron on its own": ((), "1,2,3"), "continuous": (("continuous=1",), "1,2,3"),
+           "continuous gradient": (("gradient=1",), "3")}
+
+
+def sweep(meshes, ct, labels, label, *options):
+    """For each method and degree what the meshes give: {(method, degree): [entry, ...]}."""
+    found = {}
+    for mesh in meshes:
+        for method, (parameters, degrees) in METHODS.items():
+            for entry in fits(mesh, ct, labels, label, "joins=1", *parameters, f"degrees={degrees}", *options):
+                found.setdefault((method, entry["degree"]), []).append(entry)
+    return found
+
+
+def at(entries, count, value):
+    """A value at a number of coefficients: between two meshes in logarithms; None beyond them."""
+    x = numpy.log([entry["coefficients"] for entry in entries])
+    if not x[0] <= numpy.log(count) <= x[-1]:
+        return None
+    return float(numpy.exp(numpy.interp(numpy.log(count), x, numpy.log([value(entry) for entry in entries]))))
+
+
+def sweep_tables(found, measures):
+    """All fits, then each at the numbers of coefficients that a continuous gradient has."""
+    def number(x):
+        return "" if x is None else f"{x:.2f}"
+
+    rows = [(f"{e['tetrahedra'] // (12 if method == 'continuous gradient' else 1):,}", method, degree, f"{e['coefficients']:,}",
+             f"{e['bytes']:,}", *(number(value(e)) for value in measures.values()), f"{e['jumps']['value']:.1e}",
+             f"{e['jumps']['gradient']:.1e}", f"{e['jumps']['relative']:.1e}", f"{e['seconds']:.1f}")
+            for (method, degree), entries in found.items() for e in entries]
+    text = table(("tetrahedra", "density", "degree", "coefficients", "bytes", *measures, "jump (HU)", "of the gradient (HU/mm)",
+                  "of its length", "seconds"), sorted(rows, key=lambda row: int(row[0].replace(",", ""))))
+    smooth = found[("continuous gradient", 3)]
+    for name, value in measures.items():
+        text += f"\n{name}, at equal numbers of coefficients (between two meshes in logarithms):\n\n"
+        text += table(("coefficients", *(f"{method}, {degree}" for method, degree in found)),
+                      [(f"{e['coefficients']:,}", *(number(at(entries, e["coefficients"], value)) for entries in found.values()))
+                       for e in smooth])
+    return text
+
+
+def with_bytes(found, points):
+    """Storage: the split need not be kept, as it follows from the tetrahedra."""
+    for entries in found.values():
+        for entry, (tetrahedra, count) in zip(entries, points):
+            entry["bytes"] = storage({"tetrahedra": tetrahedra, "points": count, "coefficients": entry["coefficients"]})
+    return found
+
+
+def sizes(found):
+    return [(entry["tetrahedra"], entry["points"]) for entry in found[("continuous", 1)]]
+
+
+def smooth(bonetk, data, work):
+    """Densities that are continuous, and those whose gradient is, at equal numbers of coefficients."""
+    ct, labels, label = data / "hip_ct/hip_ct.nii.gz", data / "hip_ct/hip_labels.nii.gz", 2
+
+    def meshes(name, *inputs):
+        for count in (4000, 9000, 20000, 40000, 80000):
+            folder = work / f"{name}_{count}"
+            if not folder.exists():
+                run(bonetk, "build", *inputs, "--tetrahedra", count, "--levels", 0.5, "--no-page", "-o", folder, "-q")
+            yield folder / "model_L1.vtu"
+
+    hips = sweep(meshes("hip", ct, "--labels", labels, "--label", label), ct, labels, label)
+    _, noisy, regions, clean = make_phantom(bonetk, pathlib.Path(os.environ.get("PHANTOM", work / "phantom")))
+    femora = sweep(meshes("femur", noisy, "--labels", regions), noisy, regions, 0, f"truth={clean}")
+    of_hip = sweep_tables(with_bytes(hips, sizes(hips)),
+                          {"error (%)": lambda e: e["all"]["percent"], "held out (%)": lambda e: e["heldOut"]["percent"],
+                           "gradient (HU/mm)": lambda e: e["gradientError"]})
+    of_femur = sweep_tables(with_bytes(femora, sizes(femora)),
+                            {"error (HU)": lambda e: e["all"]["mean"], "gradient (HU/mm)": lambda e: e["gradientError"]})
+    return f"""## Continuous gradients
+
+`--continuous-gradient` gives cubics on tetrahedra split into twelve (Worsey and Farin), with 4 coefficients a vertex and 2 an edge of
+each region. Why not another spline: the table below has all splines with a continuous gradient on a block of 48 tetrahedra, found as
+null spaces of the smoothness conditions, fitted to a smooth field of 400 to 1600 HU. Without a split, splines of degree 2 are the
+polynomials, and those of degree 3 hardly more; of degree 4 there are enough, but none is known to be local, and how many there are
+changes with the mesh (a local basis for every mesh takes degree 9). A penalty on jumps of the gradient makes them small only where
+the spline becomes one of those few: the error rises before the jumps are gone. Quadratics on the split into 24 (Worsey and Piper)
+need split points of edges in line with incentres, which meshes of bones do not have.
+
+{remembered(("smooth_spaces",), lambda: json.dumps(smooth_spaces.text()))}
+### Hip bone
+
+Meshes of the hip bone, and what each density costs and gives. Jumps are the largest across faces within regions; "of its length" is
+the jump of the gradient over 1 HU/mm plus its length there. Points are stored to 1e-14 of their place, so that the gradient jumps by
+more where a tetrahedron is a micrometre thin. "Gradient" is the mean length of its error against central differences of the CT.
+Bytes are those of the storage table, without the split, which follows from the tetrahedra.
+
+{of_hip}
+### Femur phantom, noise {NOISE:.0f} HU
+
+The same against the known noise-free CT.
+
+{of_femur}"""
+
+
 def make_phantom(bonetk, folder, bone="femur", subject=0, spacing=1, *build):
     """Model (level 1), noisy CT, labels and noise-free CT of a phantom, in a folder that may have them already."""
     ct, labels, clean = folder / "ct.nii.gz", folder / "labels.nii.gz", folder / "clean.nii.gz"
@@ -280,8 +381,8 @@ Best of three, {os.cpu_count()} cores that other work shares (load {os.getloadav
 def main():
     bonetk, data = os.environ["BONETK"], pathlib.Path(os.environ["BONETK_DATA"])
     with tempfile.TemporaryDirectory() as folder:
-        work = pathlib.Path(folder)
-        parts = [hip(bonetk, data, work), phantom(bonetk, work), speed()]
+        work = pathlib.Path(os.environ.get("WORK", folder))
+        parts = [hip(bonetk, data, work), phantom(bonetk, work), smooth(bonetk, data, work), speed()]
     (OUT / "density.md").write_text(f"# Density fit\n\n{made_by(__file__)}.\n\n" + "\n".join(parts))
 
 

@@ -18,6 +18,7 @@
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
 #include "boneLabelCrop.h"
+#include "boneMeshIO.h"
 #include "boneOutputTransaction.h"
 #include "boneRegistrationReport.h"
 #include "boneStageClock.h"
@@ -91,6 +92,11 @@ Complete(BuildOptions options)
   {
     throw UsageError("--atlas finds the bone by itself: leave --labels, --label and --init out");
   }
+  const std::string conflict = FindConflict(options.parameters.fit);
+  if (!conflict.empty())
+  {
+    throw UsageError(conflict);
+  }
   return options;
 }
 
@@ -157,6 +163,11 @@ WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline 
   for (std::size_t level = 0; level < pipeline.GetNumberOfLevels(); ++level)
   {
     WriteImage(pipeline.GetRadiograph(level)->GetOutput(), in("drr_L" + std::to_string(level + 1) + ".mha"));
+    if (const auto spline = pipeline.GetSpline(level))
+    {
+      WriteDensityMesh(
+        spline.GetPointer(), in("spline_L" + std::to_string(level + 1) + ".vtu"), report.parameters.storage);
+    }
   }
   evaluation.slices.Write(in("slices.png"));
   evaluation.cutPlane.Write(in("cut_plane.png"));
@@ -164,7 +175,7 @@ WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline 
   WriteFileAtomically(in("report.txt"), ToText(report));
   report.outputs = FilesIn(staging.GetPath());
   WriteFileAtomically(in("report.json"), ToJson(report));
-  static const std::regex optional("(model|drr)_L[0-9]+\\.(vtu|mha)|report\\.html");
+  static const std::regex optional("(model|spline|drr)_L[0-9]+\\.(vtu|mha)|report\\.html");
   staging.Commit([](const std::string & name) { return std::regex_match(name, optional); });
 }
 
@@ -175,7 +186,7 @@ VerifyFolder(const std::string & folder)
   std::error_code error;
   for (const auto & entry : std::filesystem::directory_iterator(folder, error))
   {
-    static const std::regex output("(contours|model|drr|slices|cut_plane|radiographs|report)[._].*");
+    static const std::regex output("(contours|model|spline|drr|slices|cut_plane|radiographs|report)[._].*");
     if (entry.is_directory(error) && std::regex_match(entry.path().filename().string(), output))
     {
       throw UsageError(entry.path().string() +
@@ -551,9 +562,12 @@ AddBuildCommand(CLI::App & app, Action & action)
                  "Folder for models, contours, pictures and report; with several bones that of their folders")
     ->required();
   AddParameterOptions(command, options->parameters.plan);
-  AddParameterOptions(command, options->parameters.fit, { "degree", "continuous", "maximumError" });
+  AddParameterOptions(
+    command, options->parameters.fit, { "degree", "continuous", "continuousGradient", "maximumError" });
   AddParameterOptions(command, options->parameters.collapse, { "improveAngles" });
-  command->get_option("--max-error")->excludes(command->get_option("--continuous"));
+  command->get_option("--max-error")
+    ->excludes(command->get_option("--continuous"))
+    ->excludes(command->get_option("--continuous-gradient"));
   AddStorageOptions(command, options->parameters.storage);
   options->page.AddTo(command);
   command->add_flag(

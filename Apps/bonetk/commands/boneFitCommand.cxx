@@ -100,6 +100,11 @@ DescribeFit(Fit & fit, const CTImage & ct)
 void
 RunFit(const FitOptions & options, Session & session)
 {
+  const std::string conflict = FindConflict(options.parameters);
+  if (!conflict.empty())
+  {
+    throw UsageError(conflict);
+  }
   VerifyOutputs({ { options.output, { ".vtu" } }, { options.report, {} } });
   const auto ct = ReadChosenCT(options.ct, options.series, session);
   auto       fit = Fit::New();
@@ -136,7 +141,9 @@ AddFitCommand(CLI::App & app, Action & action)
   AddSeriesOption(command, options->series);
   command->add_option("mesh", options->mesh, "Mesh (.vtu); a density it holds is replaced")->required();
   AddParameterOptions(command, options->parameters);
-  command->get_option("--max-error")->excludes(command->get_option("--continuous"));
+  command->get_option("--max-error")
+    ->excludes(command->get_option("--continuous"))
+    ->excludes(command->get_option("--continuous-gradient"));
   AddStorageOptions(command, options->storage);
   command->add_option("--weights", options->weights, "Image of weights, 0 or more: how much each place counts");
   command->add_option("--report", options->report, "Figures of the fit, with the error at held-out voxels (.json)");

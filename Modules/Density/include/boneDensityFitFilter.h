@@ -20,8 +20,8 @@ namespace bone
  * Inputs: the mesh (primary, "Mesh"), of any valid shape; "Image", a 3D image whose geometry (origin, spacing,
  * direction, start index) is honoured; "Weights", optional, an image of 0 or more on any grid: how much the values at a
  * place count (0: not at all, as in an artefact; interpolation reaches two voxels, so mark it with that rim). Output:
- * the mesh, its points and attributes as they were, with the density's degree, coefficients and quantity; a density
- * that the input held is replaced.
+ * the mesh, its points and attributes as they were (but with ContinuousGradient, see below), with the density's degree,
+ * coefficients and quantity; a density that the input held is replaced.
  *
  * Each tetrahedron samples the interpolated image at a fixed pattern of interior points (\ref DensityFitKernel), more
  * than twice as many as there are coefficients and several for each voxel in it; their
@@ -33,14 +33,16 @@ namespace bone
  * them is taken.
  *
  * Parameters: \ref DensityFitParameters. Continuous replaces the tetrahedra's polynomials by one least-squares spline
- * for each region (\ref MakeDensityContinuous); jumps remain between regions; it needs degree 1 or more. The linear
- * interpolator is freed of its error by curvature (\ref QuadraticSampler), so that the mass is kept. With VoxelWeight 0
- * the interpolated image alone counts, with Tikhonov 0 the fit is plain least squares, which reproduces polynomials of
- * the degree exactly; linear fields are exact in any case. Where control values lie beyond OvershootLimit, the parts of
+ * for each region (\ref MakeDensityContinuous); jumps remain between regions; it needs degree 1 or more.
+ * ContinuousGradient does so with a gradient that is continuous too (\ref MakeGradientContinuous); it needs degree 3,
+ * and the output is the mesh with every tetrahedron split into twelve (\ref SplitWorseyFarin). The linear interpolator
+ * is freed of its error by curvature (\ref QuadraticSampler), so that the mass is kept. With VoxelWeight 0 the
+ * interpolated image alone counts, with Tikhonov 0 the fit is plain least squares, which reproduces polynomials of the
+ * degree exactly; linear fields are exact in any case. Where control values lie beyond OvershootLimit, the parts of
  * highest degree are reduced (\ref LimitControlValues). SurfaceMargin keeps voxels partly outside the bone from leaving
  * a dark rim, InterfaceMargin keeps a scanner's blur from mixing the densities of two layers. MaximumError counts
- * samples and voxels of the tetrahedron; not with Continuous. HoldOut leaves out the voxels of IsHeldOut(), one in
- * five, so that the error at them tells what the model says between voxels.
+ * samples and voxels of the tetrahedron; not with Continuous or ContinuousGradient. HoldOut leaves out the voxels of
+ * IsHeldOut(), one in five, so that the error at them tells what the model says between voxels.
  *
  * Throws itk::ExceptionObject where an input is missing, the image is empty, the mesh has no tetrahedra or points that
  * are not finite, the mesh lies wholly outside the image, a voxel value used is not finite, or a parameter does not
@@ -80,7 +82,8 @@ public:
   /** After an update: what the fit found. With MaximumError its samples are those of all degrees tried. */
   itkGetConstReferenceMacro(Report, DensityFitReport);
 
-  /** After an update: the number of coefficients, those that Continuous makes one counted once. */
+  /** After an update: the number of coefficients, those of the spline's own basis with Continuous and
+   * ContinuousGradient. */
   itkGetConstMacro(NumberOfFreeCoefficients, std::size_t);
 
 protected:
@@ -116,6 +119,10 @@ private:
 
   void
   Fit(MeshArrays & arrays, const Execution & execution);
+
+  /** Fits and joins; returns the number of free coefficients. */
+  std::size_t
+  FitSpline(MeshArrays & arrays, const Execution & execution);
 
   DensityFitReport m_Report;
   std::size_t      m_NumberOfFreeCoefficients{ 0 };

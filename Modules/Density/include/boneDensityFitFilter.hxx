@@ -9,6 +9,7 @@
 #include "boneDensityFitFilter.h"
 #include "boneLinearSampler.h"
 #include "boneQuadraticSampler.h"
+#include "boneWorseyFarinSplit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,13 +44,10 @@ DensityFitFilter<TImage, TMesh>::VerifyPreconditions() const
 {
   Superclass::VerifyPreconditions();
   this->VerifyParameters();
-  if (m_Parameters.continuous && m_Parameters.maximumError > 0)
+  const std::string conflict = FindConflict(m_Parameters);
+  if (!conflict.empty())
   {
-    itkExceptionMacro("A continuous density has one degree: set MaximumError to 0, or turn Continuous off.");
-  }
-  if (m_Parameters.continuous && m_Parameters.degree < 1)
-  {
-    itkExceptionMacro("A continuous density needs Degree 1 or more: raise it, or turn Continuous off.");
+    itkExceptionMacro("" << conflict << '.');
   }
 }
 
@@ -195,6 +193,29 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays, const Execution & exec
 }
 
 template <typename TImage, typename TMesh>
+std::size_t
+DensityFitFilter<TImage, TMesh>::FitSpline(MeshArrays & arrays, const Execution & execution)
+{
+  const Execution fit = execution.Part(0.0, 0.5), join = execution.Part(0.5, 1.0);
+  try
+  {
+    if (!m_Parameters.continuousGradient)
+    {
+      this->Fit(arrays, fit);
+      return MakeDensityContinuous(arrays, join).freeCoefficients;
+    }
+    const MeshArrays mesh = std::move(arrays);
+    arrays = SplitWorseyFarin(mesh);
+    this->Fit(arrays, fit);
+    return MakeGradientContinuous(mesh, arrays, join).freeCoefficients;
+  }
+  catch (const std::logic_error & error)
+  {
+    itkExceptionMacro("" << error.what());
+  }
+}
+
+template <typename TImage, typename TMesh>
 void
 DensityFitFilter<TImage, TMesh>::GenerateData()
 {
@@ -202,21 +223,17 @@ DensityFitFilter<TImage, TMesh>::GenerateData()
   const Execution execution(this);
   this->VerifyInputs();
   arrays.quantity = m_Parameters.quantity;
-  this->Fit(arrays, execution.Part(0.0, m_Parameters.continuous ? 0.5 : 1.0));
-  m_NumberOfFreeCoefficients = 0;
-  for (const int degree : arrays.degree)
+  if (m_Parameters.continuous || m_Parameters.continuousGradient)
   {
-    m_NumberOfFreeCoefficients += BernsteinCount(degree);
+    m_NumberOfFreeCoefficients = this->FitSpline(arrays, execution);
   }
-  if (m_Parameters.continuous)
+  else
   {
-    try
+    this->Fit(arrays, execution);
+    m_NumberOfFreeCoefficients = 0;
+    for (const int degree : arrays.degree)
     {
-      m_NumberOfFreeCoefficients = MakeDensityContinuous(arrays, execution.Part(0.5, 1.0)).freeCoefficients;
-    }
-    catch (const std::logic_error & error)
-    {
-      itkExceptionMacro("" << error.what());
+      m_NumberOfFreeCoefficients += BernsteinCount(degree);
     }
   }
   this->SetResult(std::move(arrays));

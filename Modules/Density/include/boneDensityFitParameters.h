@@ -27,6 +27,8 @@ struct ParameterChoices<DensityInterpolator>
   value(int, degree, Degree, 3, ParameterRange::Between(0, MaximumBernsteinDegree), "", "degree", \
     "Degree of the polynomials") \
   flag(continuous, Continuous, false, "continuous", "One continuous density within each region") \
+  flag(continuousGradient, ContinuousGradient, false, "continuous-gradient", \
+    "One density of degree 3 within each region whose gradient is continuous too; splits every tetrahedron into 12") \
   value(double, maximumError, MaximumError, 0.0, ParameterRange::NotNegative(), "density units", "max-error", \
     "Lowest degree, up to --degree, whose root mean square error in the tetrahedron is at most this; 0: --degree in all") \
   value(DensityInterpolator, interpolator, Interpolator, DensityInterpolator::Linear, ParameterRange::Any(), "", \

@@ -10,6 +10,7 @@
 #include "boneVoxelGrid.h"
 
 #include <functional>
+#include <string>
 
 namespace bone
 {
@@ -39,6 +40,10 @@ struct DensityFitReport
   double      overshoot90{ 0.0 };      ///< its 90th percentile
   double      overshootMaximum{ 0.0 }; ///< its maximum
 };
+
+/** Which of the parameters do not go together, and what to do, in one line without a full stop; empty where they do. */
+std::string
+FindConflict(const DensityFitParameters & parameters);
 
 /** One in five of the voxels of a block, so that no two of them share a face: those left out where a fit is judged. */
 inline bool

@@ -544,6 +544,30 @@ ClearUnused(MeshArrays & mesh)
 }
 } // namespace
 
+std::string
+FindConflict(const DensityFitParameters & parameters)
+{
+  if (parameters.continuousGradient && parameters.maximumError > 0)
+  {
+    return "A density with a continuous gradient has one degree: set no bound on its error, or leave the gradient as "
+           "it is";
+  }
+  if (parameters.continuousGradient && parameters.degree != 3)
+  {
+    return "A density with a continuous gradient has degree 3, not " + std::to_string(parameters.degree) +
+           ": set the degree to 3, or leave the gradient as it is";
+  }
+  if (parameters.continuous && parameters.maximumError > 0)
+  {
+    return "A continuous density has one degree: set MaximumError to 0, or turn Continuous off";
+  }
+  if (parameters.continuous && parameters.degree < 1)
+  {
+    return "A continuous density needs Degree 1 or more: raise it, or turn Continuous off";
+  }
+  return {};
+}
+
 DensityFitReport
 FitDensity(MeshArrays &                 mesh,
            const DensityFitImage &      image,

@@ -101,29 +101,29 @@ SimplicesOf(const MeshArrays & mesh)
   return simplices;
 }
 
-/** Fills start and uses from global. */
-void
-ListUses(SharedCoefficients & shared)
-{
-  shared.start.assign(shared.size + 1, 0);
-  for (std::uint32_t place : shared.global)
-  {
-    ++shared.start[place + 1];
-  }
-  std::partial_sum(shared.start.begin(), shared.start.end(), shared.start.begin());
-  shared.uses.resize(shared.global.size());
-  std::vector<std::uint32_t> next(shared.start.begin(), shared.start.end() - 1);
-  for (std::size_t use = 0; use < shared.global.size(); ++use)
-  {
-    shared.uses[next[shared.global[use]]++] = static_cast<std::uint32_t>(use);
-  }
-}
 } // namespace
 
-SharedCoefficients
-ShareCoefficients(const MeshArrays & mesh)
+void
+SharedCoefficients::ListUses()
 {
-  const int         n = mesh.maximumDegree;
+  start.assign(size + 1, 0);
+  for (std::uint32_t place : global)
+  {
+    ++start[place + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  uses.resize(global.size());
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+  for (std::size_t use = 0; use < global.size(); ++use)
+  {
+    uses[next[global[use]]++] = static_cast<std::uint32_t>(use);
+  }
+}
+
+SharedCoefficients
+ShareCoefficients(const MeshArrays & mesh, int degree)
+{
+  const int         n = degree;
   const auto &      exponents = BernsteinExponents(n);
   const std::size_t count = exponents.size(), cells = mesh.tetrahedra.size();
   if (cells > std::numeric_limits<std::uint32_t>::max() / count)
@@ -172,7 +172,7 @@ ShareCoefficients(const MeshArrays & mesh)
       shared.global[t * count + c] = static_cast<std::uint32_t>(place);
     }
   }
-  ListUses(shared);
+  shared.ListUses();
   return shared;
 }
 } // namespace bone

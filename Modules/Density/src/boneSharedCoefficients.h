@@ -19,6 +19,10 @@ struct SharedCoefficients
   std::vector<std::uint32_t> start;  ///< size + 1: of each coefficient's uses in `uses`
   std::vector<std::uint32_t> uses;   ///< ascending for each coefficient
 
+  /** Fills start and uses from global. */
+  void
+  ListUses();
+
   template <typename TBody>
   void
   ForUses(std::size_t coefficient, const TBody & body) const
@@ -30,10 +34,10 @@ struct SharedCoefficients
   }
 };
 
-/** Coefficients of degree mesh.maximumDegree on the vertices, edges and faces that tetrahedra of one region share
+/** Coefficients of a degree on the vertices, edges and faces that tetrahedra of one region share
  * become one. O(#t log #t). */
 SharedCoefficients
-ShareCoefficients(const MeshArrays & mesh);
+ShareCoefficients(const MeshArrays & mesh, int degree);
 } // namespace bone
 
 #endif

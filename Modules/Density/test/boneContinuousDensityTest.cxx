@@ -105,7 +105,7 @@ TEST_P(ContinuousOfDegree, IsTheNearestContinuousDensity)
   const ContinuousDensityReport report = MakeDensityContinuous(after, bone::Execution(), 1e-11);
   EXPECT_LE(report.residual, 1e-11);
   // What is left is orthogonal to every continuous spline: here to random ones.
-  const SharedCoefficients               shared = ShareCoefficients(before);
+  const SharedCoefficients               shared = ShareCoefficients(before, degree);
   std::mt19937                           random(9);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 3; ++trial)
@@ -141,7 +141,7 @@ TEST_P(ContinuousOfDegree, SharesAsManyCoefficientsAsTheMeshHasPlacesForThem)
   const std::size_t vertices = 27, cells = 48, faces = (4 * cells + 48) / 2, edges = vertices + faces - cells - 1;
   const std::size_t expected = vertices + edges * (n - 1) + faces * ((n - 1) * (n - 2) / 2) +
                                cells * static_cast<std::size_t>((n - 1) * (n - 2) * (n - 3) / 6);
-  EXPECT_EQ(ShareCoefficients(mesh).size, 2 * expected);
+  EXPECT_EQ(ShareCoefficients(mesh, n).size, 2 * expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(ContinuousDensity, ContinuousOfDegree, testing::Values(1, 2, 3, 5, 8));

@@ -86,6 +86,38 @@ TEST(DensityFitFilter, ALinearFieldIsExactWithContinuityAndWithoutDamping)
   EXPECT_LT(filter->GetNumberOfFreeCoefficients(), 0.5 * mesh.tetrahedra.size() * BernsteinCount(4));
 }
 
+TEST(DensityFitFilter, AQuadraticFieldIsExactWithAContinuousGradient)
+{
+  const auto quadratic = [](const Vector3 & x) {
+    return test::Linear(x) + x[0] * x[1] - 0.5 * x[2] * x[2] + 2 * x[0] * x[2] + x[1] * x[1];
+  };
+  const auto       image = test::ObliqueImage<test::DoubleImage>(quadratic);
+  const MeshArrays mesh = Block();
+  auto             filter = MakeFit(mesh, image.GetPointer(), 3);
+  filter->SetTikhonov(0);
+  filter->ContinuousGradientOn();
+  filter->Update();
+  const MeshArrays fitted = filter->GetOutput()->GetArrays();
+  ASSERT_EQ(fitted.tetrahedra.size(), 12 * mesh.tetrahedra.size());
+  double largest = 0;
+  for (std::size_t t = 0; t < fitted.tetrahedra.size(); ++t)
+  {
+    for (const Barycentric & mu :
+         { Barycentric(0.25, 0.25, 0.25, 0.25), Barycentric(0.7, 0.1, 0.2, 0), Barycentric(0, 0, 0, 1) })
+    {
+      Vector3 x = Vector3::Zero();
+      for (int i = 0; i < 4; ++i)
+      {
+        x += mu[i] * fitted.points[fitted.tetrahedra[t][i]];
+      }
+      const double value = BernsteinValue(3, &fitted.coefficients[t * BernsteinCount(3)], mu);
+      largest = std::max(largest, std::abs(value - quadratic(x)));
+    }
+  }
+  EXPECT_LE(largest, 1e-9) << "of values about 1500";
+  EXPECT_LT(filter->GetNumberOfFreeCoefficients(), 0.5 * mesh.tetrahedra.size() * BernsteinCount(3));
+}
+
 TEST(DensityFitFilter, ALinearFieldIsExactOnAMeshOfFloatsAndAnImageOfShorts)
 {
   using FloatMesh = DensityMesh<float>;
@@ -498,6 +530,11 @@ TEST(DensityFitFilter, AdaptiveDegreeIsAsLowAsTheErrorAllows)
   EXPECT_EQ(filter->GetOutput()->GetCells().maximumDegree, 0);
   filter->ContinuousOn();
   ExpectRefusal(*filter, "one degree");
+  filter->ContinuousOff();
+  filter->ContinuousGradientOn();
+  ExpectRefusal(*filter, "one degree");
+  filter->SetMaximumError(0);
+  ExpectRefusal(*filter, "degree 3, not 4");
 }
 
 TEST(DensityFitFilter, AMarginKeepsTheDarkRimOut)
@@ -593,6 +630,9 @@ TEST(DensityFitFilter, RefusesAContinuousFitOfFlatCells)
   auto filter = MakeFit(mesh, image.GetPointer(), 2);
   filter->Update();
   filter->ContinuousOn();
+  ExpectRefusal(*filter, "Tetrahedron 5");
+  filter->SetDegree(3);
+  filter->ContinuousGradientOn();
   ExpectRefusal(*filter, "Tetrahedron 5");
 }
 

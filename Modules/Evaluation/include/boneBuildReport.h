@@ -17,6 +17,14 @@
 
 namespace bone
 {
+/** A level's density with a continuous gradient (BuildPipeline::GetSpline). */
+struct SplineReport
+{
+  std::size_t       tetrahedra{ 0 };   ///< of the split mesh
+  std::size_t       coefficients{ 0 }; ///< of the spline's own basis
+  DensityComparison density;
+};
+
 /** What is to be known of one level of a built model. */
 struct LevelReport
 {
@@ -39,6 +47,7 @@ struct LevelReport
   std::optional<SurfaceDistances> distances; ///< with a label map only
   DensityComparison               density;
   double                          radiographPercent{ 0.0 };
+  std::optional<SplineReport>     spline; ///< with a continuous gradient only
 };
 
 /** What is to be known of a build. */

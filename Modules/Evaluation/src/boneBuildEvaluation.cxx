@@ -164,6 +164,12 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
       report.distances = distances->Measure(arrays);
     }
     report.density = CompareWithImage(arrays, evidence.ct, mask);
+    if (const auto spline = pipeline.GetSpline(i))
+    {
+      report.spline = { static_cast<std::size_t>(spline->GetNumberOfTetrahedra()),
+                        pipeline.GetSplineFit(i)->GetNumberOfFreeCoefficients(),
+                        CompareWithImage(spline->GetArrays(), evidence.ct, mask) };
+    }
 
     BuildPipeline::RadiographType * radiograph = pipeline.GetRadiograph(i);
     radiograph->Update();

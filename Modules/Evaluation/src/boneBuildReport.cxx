@@ -44,6 +44,16 @@ Row(PageTable &                                             table,
   }
 }
 
+nlohmann::ordered_json
+ToJson(const DensityComparison & density)
+{
+  return { { "voxels", density.voxels },
+           { "meanAbsolute", density.meanAbsolute },
+           { "bias", density.bias },
+           { "range1To99", density.range },
+           { "percentOfRange", density.meanAbsolutePercent } };
+}
+
 std::string
 RegionVolume(const LevelReport & level, int region)
 {
@@ -130,11 +140,13 @@ ToJson(const LevelReport & level)
     json["meshToLabelMm"] = ToJson(level.distances->meshToMask);
     json["labelToMeshMm"] = ToJson(level.distances->maskToMesh);
   }
-  json["densityError"] = { { "voxels", level.density.voxels },
-                           { "meanAbsolute", level.density.meanAbsolute },
-                           { "bias", level.density.bias },
-                           { "range1To99", level.density.range },
-                           { "percentOfRange", level.density.meanAbsolutePercent } };
+  json["densityError"] = ToJson(level.density);
+  if (level.spline)
+  {
+    json["spline"] = { { "tetrahedra", level.spline->tetrahedra },
+                       { "coefficients", level.spline->coefficients },
+                       { "densityError", ToJson(level.spline->density) } };
+  }
   json["radiographDifferencePercent"] = level.radiographPercent;
   json["toLevel1"] = { { "densityErrorRms", level.densityErrorToLevel1 },
                        { "surfaceErrorMm", level.surfaceErrorToLevel1 },
@@ -235,6 +247,12 @@ LevelTable(const BuildReport & report)
   Row(table, report, "density error (% of range)", [](const LevelReport & l) {
     return Fixed(l.density.meanAbsolutePercent, 2);
   });
+  if (!report.levels.empty() && report.levels.front().spline)
+  {
+    Row(table, report, "  of its spline (% of range)", [](const LevelReport & l) {
+      return Fixed(l.spline->density.meanAbsolutePercent, 2);
+    });
+  }
   Row(table, report, "radiograph difference (%)", [](const LevelReport & l) { return Fixed(l.radiographPercent, 2); });
   return table;
 }

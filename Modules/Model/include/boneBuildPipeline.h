@@ -157,9 +157,20 @@ public:
   {
     return m_PlacedHierarchy->GetOutput();
   }
+  /** The density of a level whose gradient is continuous within regions (\ref SplitWorseyFarin), fitted to the image
+   * where the fit's parameters have ContinuousGradient; null where they have not. The hierarchy is without it, as
+   * levels are simplified from tetrahedra that are not split. Brings itself up to date. */
+  MeshType::Pointer
+  GetSpline(std::size_t level);
+  /** The stage that makes it. */
+  FitType *
+  GetSplineFit(std::size_t level) const
+  {
+    return m_SplineFits.at(level);
+  }
   /** \} */
 
-  /** Brings everything up to date. */
+  /** Brings everything up to date, but for splines. */
   void
   Update();
 
@@ -182,6 +193,8 @@ private:
   PlacedHierarchyType::Pointer               m_PlacedHierarchy{ PlacedHierarchyType::New() };
   std::vector<HierarchyLevelFilter::Pointer> m_Levels;
   std::vector<RadiographType::Pointer>       m_Radiographs;
+  std::vector<HierarchyLevelFilter::Pointer> m_OwnLevels; // not in their place
+  std::vector<FitType::Pointer>              m_SplineFits;
 };
 } // namespace bone
 

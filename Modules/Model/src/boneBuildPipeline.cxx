@@ -42,6 +42,11 @@ BuildPipeline::BuildPipeline(std::size_t numberOfLevels)
     m_Levels.back()->SetLevel(level);
     m_Radiographs.push_back(RadiographType::New());
     m_Radiographs.back()->SetInput(m_Levels.back()->GetOutput());
+    m_OwnLevels.push_back(HierarchyLevelFilter::New());
+    m_OwnLevels.back()->SetInput(m_Collapse->GetOutput());
+    m_OwnLevels.back()->SetLevel(level);
+    m_SplineFits.push_back(FitType::New());
+    m_SplineFits.back()->SetMesh(m_OwnLevels.back()->GetOutput());
   }
 }
 
@@ -51,6 +56,10 @@ BuildPipeline::SetImage(const CTImage * image)
   m_Snake->SetInput(image);
   m_Tiling->SetDensityImage(image);
   m_Fit->SetImage(image);
+  for (const auto & fit : m_SplineFits)
+  {
+    fit->SetImage(image);
+  }
 }
 
 void
@@ -92,7 +101,13 @@ BuildPipeline::SetParameters(const BuildParameters & parameters)
   m_MedialAxis->SetParameters(parameters.medialAxis);
   m_Tiling->SetParameters(parameters.tiling);
   m_Quality->SetParameters(parameters.quality);
-  m_Fit->SetParameters(parameters.fit);
+  DensityFitParameters fit = parameters.fit;
+  for (const auto & spline : m_SplineFits)
+  {
+    spline->SetParameters(fit);
+  }
+  fit.continuousGradient = false;
+  m_Fit->SetParameters(fit);
   m_Collapse->SetParameters(parameters.collapse);
   for (const auto & radiograph : m_Radiographs)
   {
@@ -110,6 +125,7 @@ BuildPipeline::GetParameters(BuildParameters & parameters) const
   parameters.tiling = m_Tiling->GetParameters();
   parameters.quality = m_Quality->GetParameters();
   parameters.fit = m_Fit->GetParameters();
+  parameters.fit.continuousGradient = m_SplineFits.front()->GetContinuousGradient();
   parameters.collapse = m_Collapse->GetParameters();
   parameters.radiograph = m_Radiographs.front()->GetParameters();
 }
@@ -134,6 +150,20 @@ BuildPipeline::GetStages() const
     stages.emplace_back("radiograph L" + std::to_string(level + 1), m_Radiographs[level]);
   }
   return stages;
+}
+
+BuildPipeline::MeshType::Pointer
+BuildPipeline::GetSpline(std::size_t level)
+{
+  FitType * fit = m_SplineFits.at(level);
+  if (!fit->GetContinuousGradient())
+  {
+    return nullptr;
+  }
+  fit->Update();
+  auto placed = MeshType::New();
+  placed->SetArrays(Place(fit->GetOutput()->GetArrays(), m_PlacedHierarchy->GetPlacement()));
+  return placed;
 }
 
 void

@@ -102,6 +102,11 @@ Build(const py::object & image,
   {
     SetBuildParameter(parameters, item.first.cast<std::string>(), item.second);
   }
+  if (parameters.fit.continuousGradient)
+  {
+    throw UsageFailure(
+      "build gives levels, whose tetrahedra are not split: give a level to fit, with continuous_gradient");
+  }
   const CTImage::Pointer    ct = ToCT(ToImage(image));
   const LabelImage::Pointer map = labels.is_none() ? nullptr : ToLabels(ToImage(labels));
   if (!map && contours == nullptr)

@@ -52,6 +52,7 @@ CASES = [
     ("fit", ("ct.mha", "plain.vtu"), dict(degree=1, continuous=True, output="d.vtu"), "ct.mha plain.vtu --degree 1 --continuous -o d.vtu"),
     ("fit", ("ct.mha", "plain.vtu"), dict(degree=1, continuous=False, output="bone.vtu", report="fit.json"),
      "ct.mha plain.vtu --degree 1 -o bone.vtu --report fit.json"),
+    ("fit", ("ct.mha", "plain.vtu"), dict(continuous_gradient=True, output="c1.vtu"), "ct.mha plain.vtu --continuous-gradient -o c1.vtu"),
     ("calibrate", ("bone.vtu",), dict(line=(-4, 0.8), to="k2hpo4", law=["les1994", "schileo2008"], output="k.vtu"),
      "bone.vtu --line -4 0.8 --to k2hpo4 --law les1994 schileo2008 -o k.vtu"),
     ("voxels", ("bone.vtu",), dict(spacing=4, outside=-2000, output="v.nii.gz"), "bone.vtu --spacing 4 --outside -2000 -o v.nii.gz"),
