@@ -9,7 +9,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <sstream>
 
@@ -435,6 +434,19 @@ ModelProjection::WriteRows(int firstRow, int endRow, float * image) const
     }
   }
 }
+void
+ProjectView(const ProjectionModel & model, const XRayGeometry::View & view, const Execution & execution, float * image)
+{
+  const projection::Kernels & kernels = projection::SelectKernels(model.Parameters().portable);
+  ModelProjection             projection(model, view);
+  execution.Part(0.0, 0.9).For(projection.Tasks(), [&](std::size_t task) { projection.Draw(task, kernels); });
+  constexpr int rowsAtOnce = 64;
+  const int     rows = view.size[1];
+  execution.Part(0.9, 1.0).For(static_cast<std::size_t>((rows + rowsAtOnce - 1) / rowsAtOnce), [&](std::size_t part) {
+    const int first = static_cast<int>(part) * rowsAtOnce;
+    projection.WriteRows(first, std::min(rows, first + rowsAtOnce), image);
+  });
+}
 } // namespace
 
 void
@@ -443,36 +455,17 @@ ProjectMesh(const ProjectionModel &                 model,
             const Execution &                       execution,
             const std::vector<float *> &            images)
 {
-  struct Part
+  // A thread draws a view alone, its pictures in the cache, where there are enough views for all threads.
+  if (views.size() >= execution.GetNumberOfWorkUnits())
   {
-    std::size_t view, task;
-  };
-  const projection::Kernels &                   kernels = projection::SelectKernels(model.Parameters().portable);
-  std::vector<std::unique_ptr<ModelProjection>> projections;
-  std::vector<Part>                             parts;
+    execution.For(views.size(), [&](std::size_t v) { ProjectView(model, views[v], execution, images[v]); });
+    return;
+  }
+  const auto share = 1.0 / static_cast<double>(views.size());
   for (std::size_t v = 0; v < views.size(); ++v)
   {
-    projections.push_back(std::make_unique<ModelProjection>(model, views[v]));
-    for (std::size_t task = 0; task < projections[v]->Tasks(); ++task)
-    {
-      parts.push_back({ v, task });
-    }
+    ProjectView(model, views[v], execution.Part(share * v, share * (v + 1)), images[v]);
   }
-  execution.Part(0.0, 0.9).For(parts.size(),
-                               [&](std::size_t i) { projections[parts[i].view]->Draw(parts[i].task, kernels); });
-  constexpr int rowsAtOnce = 128;
-  parts.clear();
-  for (std::size_t v = 0; v < views.size(); ++v)
-  {
-    for (int row = 0; row < views[v].size[1]; row += rowsAtOnce)
-    {
-      parts.push_back({ v, static_cast<std::size_t>(row) });
-    }
-  }
-  execution.Part(0.9, 1.0).For(parts.size(), [&](std::size_t i) {
-    const int first = static_cast<int>(parts[i].task), rows = views[parts[i].view].size[1];
-    projections[parts[i].view]->WriteRows(first, std::min(rows, first + rowsAtOnce), images[parts[i].view]);
-  });
 }
 
 void
