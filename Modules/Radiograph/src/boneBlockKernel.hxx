@@ -2,8 +2,8 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 // The image of the tetrahedra. It is compiled like boneProjectionKernel.hxx, which describes a cell's frame. Eight
-// cells are set up at once (boneBlockSetup.hxx). Small cells then take spans, large ones and those of high degree strips,
-// ill-conditioned ones rows in double precision.
+// cells are set up at once (boneBlockSetup.hxx). Small cells then take spans, large ones and those of high degree
+// strips, ill-conditioned ones rows in double precision.
 
 #include "boneBlockSetup.hxx"
 #include "boneStripKernel.hxx"
@@ -42,7 +42,7 @@ public:
       {
         AddSteep(g);
       }
-      else if (N <= maximumSpanDegree && m_Fine[g] == 0 && FitsSpans(box))
+      else if (N <= maximumSpanDegree && m_Fine[g] == 0 && FitsSpans(box, imageSpanBox))
       {
         AddToSpans(g, box, m_Frames.c0[g], m_Frames.r0[g], m_Band, m_Spans);
       }

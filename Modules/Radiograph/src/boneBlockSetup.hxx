@@ -82,8 +82,8 @@ protected:
                                                        (m_Frames.halfDepth > 0) & (Absolute(m_Frames.volume) > 0),
                                                      BatchIndex);
     // With no front or no back plane it is too flat to be seen.
-    m_Seen = solid & (m_FirstColumn < m_EndColumn) & (m_FirstRow < m_EndRow) & (m_Shape.fronts > 0) &
-             (m_Shape.fronts < 4);
+    m_Seen =
+      solid & (m_FirstColumn < m_EndColumn) & (m_FirstRow < m_EndRow) & (m_Shape.fronts > 0) & (m_Shape.fronts < 4);
     m_Cells = m_Run.cells + block * lanes;
     m_Spans.Clear();
   }
@@ -116,10 +116,10 @@ protected:
   Monomials<N, Batch>  m_Monomials; ///< times half the depth; X and Y count pixels at the centroid
   Batch                m_Growth;    ///< how much rounding may
   BatchIndex           m_FirstColumn, m_EndColumn, m_FirstRow, m_EndRow; ///< within the band
-  BatchIndex           m_Seen;    ///< whether a cell is
-  BatchIndex           m_Exact;   ///< needs double precision throughout
-  BatchIndex           m_Precise; ///< needs it for its planes
-  BatchIndex           m_Fine;    ///< needs strips
+  BatchIndex           m_Seen;                                           ///< whether a cell is
+  BatchIndex           m_Exact;                                          ///< needs double precision throughout
+  BatchIndex           m_Precise;                                        ///< needs it for its planes
+  BatchIndex           m_Fine;                                           ///< needs strips
 
 private:
   void

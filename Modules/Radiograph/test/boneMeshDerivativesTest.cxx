@@ -355,3 +355,64 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
   }
   EXPECT_LT(different, plain.derivatives.size() / 1000) << "at an edge another face may count";
 }
+
+TEST(MeshDerivatives, TheAdjointDoesNotDependOnTheOrderOfWorkNorOnAKeptModelAndLittleOnTheInstructions)
+{
+  // From cells of many pixels, in rows longer than a vector, to cells between the pixels.
+  for (int pixels : { 7, 40, 300 })
+  {
+    SCOPED_TRACE(pixels);
+    auto mesh = Staircase(3, true);
+    std::fill(mesh.degree.begin() + mesh.degree.size() / 2, mesh.degree.end(), 3);
+    View view = Look(false);
+    view.spacing *= 33.0 / pixels;
+    view.size = { { pixels, pixels } };
+    std::vector<float> weights(static_cast<std::size_t>(pixels) * pixels);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+      weights[i] = static_cast<float>(i % 5) - 1.0f;
+    }
+    struct Gradients
+    {
+      std::vector<double>  coefficients;
+      std::vector<Vector3> positions;
+    };
+    const auto make = [&](bool kept, bool portable) {
+      MeshRadiographParameters parameters;
+      parameters.portable = portable;
+      Gradients             gradients{ std::vector<double>(mesh.coefficients.size(), 7),
+                           std::vector<Vector3>(mesh.points.size(), Vector3(7, 7, 7)) };
+      const ProjectionModel model(mesh.points, mesh, parameters, execution, kept);
+      BackprojectToMesh(
+        model, view, execution, weights.data(), gradients.coefficients.data(), gradients.positions.data());
+      return gradients;
+    };
+    const Gradients expected = make(true, false), plain = make(true, true);
+    Gradients       other = make(false, false);
+    EXPECT_EQ(other.coefficients, expected.coefficients);
+    EXPECT_EQ(other.positions, expected.positions);
+    // Within a loop's body loops run on one thread, in order.
+    execution.For(2, [&](std::size_t i) { i == 0 ? void(other = make(true, false)) : void(); });
+    EXPECT_EQ(other.coefficients, expected.coefficients);
+    EXPECT_EQ(other.positions, expected.positions);
+    double largest = 0, farthest = 0;
+    for (double c : expected.coefficients)
+    {
+      largest = std::max(largest, std::abs(c));
+    }
+    for (const Vector3 & x : expected.positions)
+    {
+      farthest = std::max(farthest, x.norm());
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_GT(farthest, 0);
+    for (std::size_t c = 0; c < plain.coefficients.size(); ++c)
+    {
+      ASSERT_NEAR(plain.coefficients[c], expected.coefficients[c], 1e-5 * largest) << c;
+    }
+    for (std::size_t v = 0; v < plain.positions.size(); ++v)
+    {
+      ASSERT_LT((plain.positions[v] - expected.positions[v]).norm(), 1e-4 * farthest) << v;
+    }
+  }
+}
