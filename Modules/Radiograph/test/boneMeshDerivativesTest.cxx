@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace
 {
 using namespace bone;
@@ -354,6 +356,38 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
     different += std::abs(plain.derivatives[i] - images.derivatives[i]) > 1e-4 * largest ? 1 : 0;
   }
   EXPECT_LT(different, plain.derivatives.size() / 1000) << "at an edge another face may count";
+}
+
+TEST(MeshDerivatives, TheAdjointIsTheTransposeForEachOfManyCells)
+{
+  auto mesh = test::GridMesh({ { 8, 7, 6 } }, Vector3(-20, -15, -10), Vector3(5, 5, 4), 0.2);
+  test::SetRandom(mesh, 2, 3);
+  View view = Look(false);
+  view.spacing *= 0.5;
+  view.size = { { 66, 58 } };
+  std::vector<float> weights(static_cast<std::size_t>(view.size[0]) * view.size[1]), image(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i)
+  {
+    weights[i] = 1.0f + static_cast<float>(i % 7);
+  }
+  std::vector<double>  coefficients(mesh.coefficients.size());
+  std::vector<Vector3> positions(mesh.points.size());
+  BackprojectToMesh(mesh.points, mesh, view, {}, execution, weights.data(), coefficients.data(), positions.data());
+  const std::size_t stride = BernsteinCount(mesh.maximumDegree);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); t += 37)
+  {
+    // The tetrahedron alone.
+    MeshArrays alone = mesh;
+    alone.region.assign(mesh.tetrahedra.size(), 1);
+    alone.region[t] = 2;
+    MeshRadiographParameters parameters;
+    parameters.minimumRegion = 2;
+    ProjectMesh(alone.points, alone, view, parameters, execution, image.data());
+    const double forward = std::inner_product(image.begin(), image.end(), weights.begin(), 0.0);
+    const double backward = std::inner_product(
+      &coefficients[t * stride], &coefficients[t * stride] + stride, &mesh.coefficients[t * stride], 0.0);
+    EXPECT_NEAR(backward, forward, 1e-5 * std::abs(forward)) << t;
+  }
 }
 
 TEST(MeshDerivatives, TheAdjointDoesNotDependOnTheOrderOfWorkNorOnAKeptModelAndLittleOnTheInstructions)
