@@ -2,18 +2,21 @@
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
 // boneRadiographValidation CT GEOMETRY.json MODEL.vtu...: times radiographs of the models, kept and made anew, of the
-// CT by Joseph's method and by ITK's RayCastInterpolateImageFunction, the first model's derivatives, and the first
-// model as "close" with a detector a fifth as wide, which the bone fills; all with two threads. Prints a "name wall_ms
-// processor_ms" a line, least of the repetitions, then for each model the cells on its rays.
+// CT by Joseph's method and by ITK's RayCastInterpolateImageFunction, the first model's derivatives and adjoint, many
+// small views of the last model as a search has them, and the first model as "close" with a detector a fifth as wide,
+// which the bone fills; all with two threads. Prints a "name wall_ms processor_ms" a line, least of the repetitions,
+// then for each model the cells on its rays.
+// boneRadiographValidation first GEOMETRY.json MODEL.vtu: the first radiograph of this process, then the next ones of
+// the same filter.
 #include <itkIdentityTransform.h>
 #include <itkRayCastInterpolateImageFunction.h> // before other versions of Eigen than ITK's
 
 #include "boneGeometryIO.h"
 #include "boneMeshWalk.h"
 #include "boneImageIO.h"
+#include "boneDRRImageFilter.h"
 #include "boneMeshDerivatives.h"
 #include "boneMeshIO.h"
-#include "boneProjectionModel.h"
 #include "boneVoxelDRRImageFilter.h"
 
 #include <algorithm>
@@ -33,19 +36,39 @@ TwoThreads()
   return execution;
 }
 
+struct Work
+{
+  std::string           name;
+  std::function<void()> run;
+};
+
+/** Runs the works in turn, so that all of them meet what else the machine does. */
+void
+Time(const std::vector<Work> & works, int repetitions)
+{
+  std::vector<double> wall(works.size(), 1e30), processor(works.size(), 1e30);
+  for (int i = 0; i < repetitions; ++i)
+  {
+    for (std::size_t w = 0; w < works.size(); ++w)
+    {
+      const auto         start = std::chrono::steady_clock::now();
+      const std::clock_t ticks = std::clock();
+      works[w].run();
+      processor[w] = std::min(processor[w], 1e3 * static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC);
+      wall[w] =
+        std::min(wall[w], 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+  }
+  for (std::size_t w = 0; w < works.size(); ++w)
+  {
+    std::cout << works[w].name << ' ' << wall[w] << ' ' << processor[w] << '\n';
+  }
+}
+
 void
 Time(const std::string & name, int repetitions, const std::function<void()> & work)
 {
-  double wall = 1e30, processor = 1e30;
-  for (int i = 0; i < repetitions; ++i)
-  {
-    const auto         start = std::chrono::steady_clock::now();
-    const std::clock_t ticks = std::clock();
-    work();
-    processor = std::min(processor, 1e3 * static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC);
-    wall = std::min(wall, 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  std::cout << name << ' ' << wall << ' ' << processor << '\n';
+  Time({ { name, work } }, repetitions);
 }
 
 std::size_t
@@ -85,6 +108,8 @@ TimeModel(const std::string & name, const std::string & path, const XRayGeometry
   std::cout << "cells " << name << ' ' << mesh.tetrahedra.size() << ' ' << intervals << ' ' << rays << '\n';
 }
 
+/** The image, its derivatives by 26 modes, and the image with the derivatives of a number by all points and
+ * coefficients. */
 void
 TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
 {
@@ -102,9 +127,65 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
   {
     pointers.push_back(&images[i]);
   }
-  Time("derivatives " + path, 15, [&]() {
-    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers);
-  });
+  const ProjectionModel    model(mesh.points, mesh, {}, TwoThreads());
+  const std::vector<float> weights(Pixels(view), 1.0f);
+  std::vector<float>       image(Pixels(view));
+  std::vector<double>      coefficients(mesh.coefficients.size());
+  std::vector<Vector3>     positions(mesh.points.size());
+  const auto               draw = [&]() { ProjectMesh(model, { view }, TwoThreads(), { image.data() }); };
+  Time(
+    { { "image", draw },
+      { "derivatives", [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers); } },
+      { "adjoint",
+        [&]() {
+          draw();
+          BackprojectToMesh(model, view, TwoThreads(), weights.data(), coefficients.data(), positions.data());
+        } } },
+    60);
+}
+
+/** 64 poses before a detector of 128 x 128 pixels, in one call and one by one. */
+void
+TimeSearch(const std::string & path, XRayGeometry::View view)
+{
+  constexpr int pixels = 128, poses = 64;
+  view.spacing *= static_cast<double>(view.size[0]) / pixels;
+  view.size = { { pixels, pixels } };
+  const MeshArrays                mesh = ReadDensityMesh(path)->GetArrays();
+  const ProjectionModel           model(mesh.points, mesh, {}, TwoThreads());
+  std::vector<XRayGeometry::View> views(poses, view);
+  std::vector<float>              images(poses * Pixels(view));
+  std::vector<float *>            pointers;
+  for (int i = 0; i < poses; ++i)
+  {
+    views[i].source += Vector3(3.0 * (i % 4), 2.0 * (i / 16), 3.0 * (i / 4 % 4));
+    pointers.push_back(&images[i * Pixels(view)]);
+  }
+  Time({ { "search", [&]() { ProjectMesh(model, views, TwoThreads(), pointers); } },
+         { "search_alone",
+           [&]() {
+             for (int i = 0; i < poses; ++i)
+             {
+               ProjectMesh(model, { views[i] }, TwoThreads(), { pointers[i] });
+             }
+           } } },
+       40);
+}
+
+/** What a process waits for its first radiograph: threads, pages of memory, the model and the image; then what it waits
+ * for more of the same model. */
+void
+TimeFirst(const std::string & path, XRayGeometry * geometry)
+{
+  auto drr = DRRImageFilter<DensityMesh<double>, CTImage>::New();
+  drr->SetInput(ReadDensityMesh(path));
+  drr->SetGeometry(geometry);
+  const auto update = [&]() {
+    geometry->Modified();
+    drr->Update();
+  };
+  Time("first", 1, update);
+  Time("kept", 20, update);
 }
 
 /** ITK's ray caster turns no axes: points are turned about the image's origin. It counts what is above 0. */
@@ -158,24 +239,30 @@ main(int argc, char * argv[])
 {
   if (argc < 4)
   {
-    std::cerr << "usage: boneRadiographValidation CT GEOMETRY.json MODEL.vtu...\n";
+    std::cerr << "usage: boneRadiographValidation CT|first GEOMETRY.json MODEL.vtu...\n";
     return 2;
   }
   itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(2);
   try
   {
+    const auto geometry = ReadGeometry(argv[2]).front();
+    if (argv[1] == std::string("first"))
+    {
+      TimeFirst(argv[3], geometry);
+      return 0;
+    }
     const auto ct = ReadCT(argv[1]);
     const auto voxels = ct->GetBufferedRegion().GetNumberOfPixels();
     std::transform(ct->GetBufferPointer(), ct->GetBufferPointer() + voxels, ct->GetBufferPointer(), [](float value) {
       return std::max(value, 0.0f);
     });
-    const auto geometry = ReadGeometry(argv[2]).front();
     for (int i = 3; i < argc; ++i)
     {
       TimeModel(argv[i], argv[i], geometry->GetView());
     }
     TimeModel("close", argv[3], CloseView(geometry->GetView(), 0.2));
     TimeDerivatives(argv[3], geometry->GetView());
+    TimeSearch(argv[argc - 1], geometry->GetView());
     auto joseph = VoxelDRRImageFilter<CTImage, CTImage>::New();
     joseph->SetInput(ct);
     joseph->SetGeometry(geometry);

@@ -72,15 +72,14 @@ DRRAdjointFilter<TMesh, TImage>::GenerateData()
   {
     ++views;
   }
-  std::vector<double>  sum(arrays.coefficients.size(), 0.0), coefficients(sum.size());
-  std::vector<Vector3> gradient(arrays.points.size(), Vector3(Vector3::Zero())), points(gradient.size());
+  const ProjectionModel model(arrays.points, arrays, parameters, execution.Silent(), views > 1);
+  std::vector<double>   sum(arrays.coefficients.size(), 0.0), coefficients(sum.size());
+  std::vector<Vector3>  gradient(arrays.points.size(), Vector3(Vector3::Zero())), points(gradient.size());
   for (unsigned int view = 0; view < views; ++view)
   {
     const std::vector<float> weights = this->GetWeights(view);
-    BackprojectToMesh(arrays.points,
-                      arrays,
+    BackprojectToMesh(model,
                       this->GetGeometry(view)->GetView(),
-                      parameters,
                       execution.Part(static_cast<double>(view) / views, (view + 1.0) / views),
                       weights.data(),
                       coefficients.data(),

@@ -4,7 +4,7 @@
 #ifndef boneMeshDerivatives_h
 #define boneMeshDerivatives_h
 
-#include "boneMeshRadiograph.h"
+#include "boneProjectionModel.h"
 
 namespace bone
 {
@@ -58,6 +58,15 @@ BackprojectToMesh(const std::vector<Vector3> &     points,
                   const float *                    image,
                   double *                         coefficients,
                   Vector3 *                        positions);
+
+/** The same for a model that is kept. */
+void
+BackprojectToMesh(const ProjectionModel &    model,
+                  const XRayGeometry::View & view,
+                  const Execution &          execution,
+                  const float *              image,
+                  double *                   coefficients,
+                  Vector3 *                  positions);
 } // namespace bone
 
 #endif

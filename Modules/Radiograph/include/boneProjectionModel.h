@@ -4,6 +4,7 @@
 #ifndef boneProjectionModel_h
 #define boneProjectionModel_h
 
+#include "boneLargeArray.h"
 #include "boneMeshRadiograph.h"
 
 #include <cstdint>
@@ -39,8 +40,8 @@ public:
     std::vector<std::int32_t> cells;        ///< of each block; -1 after the last one of all
     std::vector<Vector3>      centres;      ///< of each block's bounding box
     std::vector<Vector3>      halfSizes;    ///< the box's
-    std::vector<double>       vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), tetrahedra
-    std::vector<float>        coefficients; ///< of each block: see projection::BlockRun
+    LargeArray<double>        vertices;     ///< of each block: 4 vertices, 3 coordinates (mm), tetrahedra
+    LargeArray<float>         coefficients; ///< of each block: see projection::BlockRun
 
     std::size_t
     Count() const

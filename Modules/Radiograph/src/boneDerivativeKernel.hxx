@@ -1,8 +1,7 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-// Derivatives of the projection and its adjoint. The derivatives of a pixel are sums over its terms (boneRayTerms.hxx)
-// for all modes at once; the adjoint sums each term over the pixels.
+// Derivatives of the projection. Those of a pixel are sums over its terms (boneRayTerms.hxx) for all modes at once.
 
 #include "boneRayTerms.hxx"
 
@@ -21,21 +20,6 @@ struct ModeTable
 {
   Modes of[TCount];
 };
-
-/** Rows of eight become columns. */
-inline void
-TransposeBlock(const Batch (&from)[lanes], Batch (&to)[lanes])
-{
-  Batch low[lanes], high[lanes];
-  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[0]), low);
-  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[groupSize]), high);
-  // Of low: column k in its first half, column k + 4 in its second, of rows 0..3; high: of rows 4..7.
-  for (int k = 0; k < groupSize; ++k)
-  {
-    to[k] = __builtin_shufflevector(low[k], high[k], 0, 1, 2, 3, 8, 9, 10, 11);
-    to[k + groupSize] = __builtin_shufflevector(low[k], high[k], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-}
 
 /** Numbers in single precision, then zeros. */
 template <int TCount>
@@ -271,101 +255,6 @@ DeriveOfDegree(CellGroup & group, const Derivatives & derivatives, const Band & 
   });
 }
 
-template <typename TLanes>
-inline double
-Sum(const TLanes & values)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < sizeof(values) / sizeof(values[0]); ++i)
-  {
-    sum += values[i];
-  }
-  return sum;
-}
-
-/** Sums a cell's terms times the band's weights over the pixels. */
-template <typename TReal, int N>
-class TermSummer
-{
-public:
-  using Lanes = typename TermVector<TReal>::Type;
-  static constexpr int count = CoefficientCount(N);
-
-  TermSummer(const Band & band, bool withVertices)
-    : m_Band(band)
-    , m_WithVertices(withVertices)
-  {}
-
-  void
-  Add(const RayTerms<TReal, N> & rays, const PixelList<TReal> & list)
-  {
-    TReal weights[listSize + TermVector<TReal>::size];
-    for (int i = 0; i < list.count; ++i)
-    {
-      weights[i] = m_Band.data[list.at[i]];
-    }
-    for (int i = list.count; i < list.count + TermVector<TReal>::size; ++i)
-    {
-      weights[i] = 0;
-    }
-    for (int i = 0; i < list.count; i += TermVector<TReal>::size)
-    {
-      Lanes xi, eta, weight;
-      __builtin_memcpy(&xi, list.xi + i, sizeof(xi));
-      __builtin_memcpy(&eta, list.eta + i, sizeof(eta));
-      __builtin_memcpy(&weight, weights + i, sizeof(weight));
-      rays.Make(
-        xi,
-        eta,
-        weight != 0,
-        m_WithVertices,
-        [&](int p, const Lanes & value) __attribute__((always_inline)) { m_Basis[p] += weight * value; },
-        [&](int q, const Lanes & value) __attribute__((always_inline)) { m_Vertex[q] += weight * value; });
-    }
-  }
-  void
-  Write(double halfDepth, double * basis, double * positions) const
-  {
-    for (int p = 0; p < count; ++p)
-    {
-      basis[p] = halfDepth * basisFactors<N>.of[p] * Sum(m_Basis[p]);
-    }
-    for (int q = 0; m_WithVertices && q < vertexTerms; ++q)
-    {
-      positions[q] = Sum(m_Vertex[q]);
-    }
-  }
-
-private:
-  const Band & m_Band;
-  bool         m_WithVertices;
-  Lanes        m_Basis[count] = {};
-  Lanes        m_Vertex[vertexTerms] = {};
-};
-
-template <int N>
-void
-AdjoinOfDegree(CellGroup & group, const Adjoint & adjoint, const Band & band)
-{
-  GroupFrame groupFrame;
-  SetGroupFrame(group, groupFrame);
-  const FrameSteps steps = StepsOf(groupFrame, group.parallel);
-  GroupDensity<N>  density;
-  density.Set(group, groupFrame, steps.perX, steps.perY);
-  const bool withVertices = adjoint.positions[0] != nullptr;
-  const auto sum = [&](const auto real, int member, const Frame & frame) {
-    using Real = std::decay_t<decltype(real)>;
-    const RayTerms<Real, N> rays(groupFrame, frame, steps, density, member, group.parallel);
-    TermSummer<Real, N>     summer(band, withVertices);
-    PixelList<Real>         pixels;
-    ForEachPixelList(frame, band, pixels, [&](const PixelList<Real> & list) { summer.Add(rays, list); });
-    summer.Write(groupFrame.halfDepth[member], adjoint.basis[member], adjoint.positions[member]);
-  };
-  ForEachSeen(group, groupFrame, band, [&](int member, const Frame & frame, bool exact) {
-    exact ? sum(double(), member, frame) : sum(float(), member, frame);
-  });
-}
-
 inline void
 DeriveCells(CellGroup & group, const Derivatives & derivatives, const Band & band)
 {
@@ -377,16 +266,6 @@ DeriveCells(CellGroup & group, const Derivatives & derivatives, const Band & ban
   byDegree[group.degree](group, derivatives, band);
 }
 
-inline void
-AdjoinCells(CellGroup & group, const Adjoint & adjoint, const Band & band)
-{
-  Complete(group);
-  using Function = void (*)(CellGroup &, const Adjoint &, const Band &);
-  constexpr Function byDegree[] = { AdjoinOfDegree<0>, AdjoinOfDegree<1>, AdjoinOfDegree<2>,
-                                    AdjoinOfDegree<3>, AdjoinOfDegree<4>, AdjoinOfDegree<5>,
-                                    AdjoinOfDegree<6>, AdjoinOfDegree<7>, AdjoinOfDegree<8> };
-  byDegree[group.degree](group, adjoint, band);
-}
 } // namespace BONE_PROJECTION_NAMESPACE
 } // namespace projection
 } // namespace bone

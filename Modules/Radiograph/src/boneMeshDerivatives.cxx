@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneMeshDerivatives.h"
 
-#include "boneProjectedCells.h"
+#include "boneChordDerivative.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,93 +13,7 @@ namespace bone
 {
 namespace
 {
-constexpr int maximumCount = BernsteinCount(MaximumBernsteinDegree);
 constexpr int poseModes = 6;
-
-/** K_ij (i = 1..3), see boneDerivativeKernel.hxx, and the integrals of the Bernstein polynomials for one chord. */
-struct ChordTerms
-{
-  double k[12]{};
-  double basis[maximumCount]{};
-};
-
-/** Adds sign * rho mu_j / (d mu_face / ds) at one end of a chord. */
-void
-AddFaceTerm(const Barycentric & mu, double value, int face, double rate, ChordTerms & terms)
-{
-  for (int j = 0; j < 4; ++j)
-  {
-    const double term = value * mu[j] / rate;
-    for (int i = 1; i < 4; ++i)
-    {
-      terms.k[4 * (i - 1) + j] += face == i ? term : (face == 0 ? -term : 0.0);
-    }
-  }
-}
-
-/** In double precision, for cells that the kernels cannot take. */
-class ChordDerivative
-{
-public:
-  ChordDerivative(const CellDensity & density, const MeshRadiographParameters & parameters, std::size_t t)
-    : m_Degree(density.Degree(t))
-  {
-    const double * c = density.Coefficients(t);
-    std::transform(c, c + BernsteinCount(m_Degree), m_Coefficients, [&](double value) {
-      return parameters.scale * value + parameters.offset;
-    });
-  }
-
-  ChordTerms
-  At(const CellChord & chord, const Eigen::Vector4d & rates) const
-  {
-    // Gauss-Legendre, five points: exact to degree 9.
-    static constexpr double x[] = {
-      -0.90617984593866399, -0.53846931010568309, 0.0, 0.53846931010568309, 0.90617984593866399
-    };
-    static constexpr double w[] = {
-      0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454
-    };
-    ChordTerms terms;
-    for (int g = 0; g < 5; ++g)
-    {
-      const Barycentric mu = 0.5 * (1 - x[g]) * chord.entry + 0.5 * (1 + x[g]) * chord.exit;
-      const double      weight = w[g] * chord.length;
-      double            values[maximumCount];
-      BernsteinBasis(m_Degree, mu, values);
-      for (int p = 0; p < BernsteinCount(m_Degree); ++p)
-      {
-        terms.basis[p] += weight * values[p];
-      }
-      const Eigen::Vector4d gradient = BernsteinBarycentricGradient(m_Degree, m_Coefficients, mu);
-      for (int q = 0; q < 12; ++q)
-      {
-        terms.k[q] -= weight * (gradient[q / 4 + 1] - gradient[0]) * mu[q % 4];
-      }
-    }
-    if (chord.exitFace >= 0)
-    {
-      const double value = BernsteinValue(m_Degree, m_Coefficients, chord.exit);
-      AddFaceTerm(chord.exit, value, chord.exitFace, rates[chord.exitFace], terms);
-    }
-    if (chord.entryFace >= 0)
-    {
-      const double value = BernsteinValue(m_Degree, m_Coefficients, chord.entry);
-      AddFaceTerm(chord.entry, -value, chord.entryFace, rates[chord.entryFace], terms);
-    }
-    return terms;
-  }
-
-private:
-  int    m_Degree;
-  double m_Coefficients[maximumCount];
-};
-
-Eigen::Vector4d
-RatesAlong(const AffineBarycentric & mu, const RayFrame & rays, int column, int row)
-{
-  return mu.gradient * rays.Direction(column, row);
-}
 
 /** Moves a point, mm per unit. */
 Vector3
@@ -343,121 +257,6 @@ DerivativeProjector::WriteRow(int                          row,
   }
 }
 
-class Backprojector
-{
-public:
-  Backprojector(const std::vector<Vector3> &     points,
-                const MeshCells &                cells,
-                const XRayGeometry::View &       view,
-                const MeshRadiographParameters & parameters,
-                bool                             withPositions)
-    : m_Points(points)
-    , m_Cells(cells)
-    , m_Parameters(parameters)
-    , m_Projected(points, cells, view, parameters, 1)
-    , m_Positions(withPositions ? 4 * cells.tetrahedra.size() : 0, Vector3(Vector3::Zero()))
-  {}
-
-  void
-  Run(const Execution & execution, const float * image, double * coefficients);
-  void
-  GatherPositions(Vector3 * gradient) const;
-
-private:
-  void
-  SetWeights(const float * image);
-  void
-  AddGeneral(std::size_t t, double * coefficients);
-
-  const std::vector<Vector3> &     m_Points;
-  const MeshCells &                m_Cells;
-  const MeshRadiographParameters & m_Parameters;
-  ProjectedCells                   m_Projected;
-  std::vector<float>               m_Weights; ///< the image times the rays' step length
-  projection::Band                 m_Band{};
-  std::vector<Vector3>             m_Positions; ///< of each cell and vertex, in space
-};
-
-void
-Backprojector::SetWeights(const float * image)
-{
-  const RayFrame & rays = m_Projected.Rays();
-  const int        stride = rays.Columns() + projection::lanes;
-  m_Weights.assign(static_cast<std::size_t>(stride) * rays.Rows(), 0.0f);
-  for (int row = 0; row < rays.Rows(); ++row)
-  {
-    for (int column = 0; column < rays.Columns(); ++column)
-    {
-      m_Weights[static_cast<std::size_t>(row) * stride + column] =
-        static_cast<float>(*image++ * rays.StepLength(column, row));
-    }
-  }
-  m_Band = projection::Band{ m_Weights.data(), stride, 0, rays.Rows(), rays.Columns() };
-}
-
-void
-Backprojector::AddGeneral(std::size_t t, double * coefficients)
-{
-  const ChordDerivative derivative(m_Projected.Density(), m_Parameters, t);
-  const int             count = BernsteinCount(m_Cells.degree[t]);
-  m_Projected.ForEachChord(
-    t, 0, m_Band.endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric & mu) {
-      const ChordTerms terms = derivative.At(chord, RatesAlong(mu, m_Projected.Rays(), column, row));
-      const double     weight = m_Band.data[row * m_Band.stride + column];
-      for (int p = 0; p < count; ++p)
-      {
-        coefficients[p] += weight * terms.basis[p];
-      }
-      for (int q = 0; q < 12 && !m_Positions.empty(); ++q)
-      {
-        m_Positions[4 * t + q % 4] += weight * terms.k[q] * mu.gradient.row(q / 4 + 1).transpose();
-      }
-    });
-}
-
-void
-Backprojector::Run(const Execution & execution, const float * image, double * coefficients)
-{
-  m_Projected.Prepare(execution.Silent());
-  SetWeights(image);
-  const std::size_t stride = BernsteinCount(m_Cells.maximumDegree), cells = m_Cells.tetrahedra.size();
-  std::fill_n(coefficients, stride * cells, 0.0);
-  constexpr std::size_t       block = 256;
-  const projection::Kernels & kernels = projection::SelectKernels(m_Parameters.portable);
-  execution.For((cells + block - 1) / block, [&](std::size_t b) {
-    std::vector<IdType> ids(std::min(cells, (b + 1) * block) - b * block);
-    std::iota(ids.begin(), ids.end(), static_cast<IdType>(b * block));
-    m_Projected.ForEachGroup(
-      ids,
-      [&](projection::CellGroup & group, const IdType * members, std::size_t) {
-        projection::Adjoint task{};
-        for (int g = 0; g < group.count; ++g)
-        {
-          task.basis[g] = coefficients + members[g] * stride;
-          task.positions[g] = m_Positions.empty() ? nullptr : m_Positions[4 * members[g]].data();
-        }
-        kernels.adjoin(group, task, m_Band);
-        for (std::size_t i = 0; i < 4 * static_cast<std::size_t>(group.count) && !m_Positions.empty(); ++i)
-        {
-          Vector3 & position = m_Positions[4 * static_cast<std::size_t>(members[i / 4]) + i % 4];
-          position = m_Projected.Rays().ToPixel().transpose() * position;
-        }
-      },
-      [&](std::size_t t) { AddGeneral(t, coefficients + t * stride); });
-    const std::size_t end = std::min(cells, (b + 1) * block) * stride;
-    std::for_each(coefficients + b * block * stride, coefficients + end, [&](double & c) { c *= m_Parameters.scale; });
-  });
-}
-
-void
-Backprojector::GatherPositions(Vector3 * gradient) const
-{
-  std::fill_n(gradient, m_Points.size(), Vector3(Vector3::Zero()));
-  for (std::size_t i = 0; i < m_Positions.size(); ++i)
-  {
-    gradient[m_Cells.tetrahedra[i / 4][i % 4]] += m_Positions[i];
-  }
-}
 } // namespace
 
 void
@@ -472,21 +271,4 @@ ProjectMeshDerivatives(const std::vector<Vector3> &     points,
   DerivativeProjector(points, cells, view, parameters, modes).Run(execution, images);
 }
 
-void
-BackprojectToMesh(const std::vector<Vector3> &     points,
-                  const MeshCells &                cells,
-                  const XRayGeometry::View &       view,
-                  const MeshRadiographParameters & parameters,
-                  const Execution &                execution,
-                  const float *                    image,
-                  double *                         coefficients,
-                  Vector3 *                        positions)
-{
-  Backprojector backprojector(points, cells, view, parameters, positions != nullptr);
-  backprojector.Run(execution, image, coefficients);
-  if (positions != nullptr)
-  {
-    backprojector.GatherPositions(positions);
-  }
-}
 } // namespace bone

@@ -1,15 +1,13 @@
 /*=========================================================================
  *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
  *=========================================================================*/
-#include "boneProjectedCells.h"
-#include "boneProjectionModel.h"
+#include "boneModelView.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <sstream>
 
@@ -85,38 +83,14 @@ BandCount(const XRayGeometry::View & view)
   return std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 });
 }
 
-/** A range of pixels. */
-struct PixelRange
-{
-  int firstColumn{ std::numeric_limits<int>::max() };
-  int endColumn{ 0 };
-  int firstRow{ std::numeric_limits<int>::max() };
-  int endRow{ 0 };
-
-  bool
-  IsEmpty() const
-  {
-    return firstColumn >= endColumn || firstRow >= endRow;
-  }
-  void
-  Include(const PixelRange & other)
-  {
-    firstColumn = std::min(firstColumn, other.firstColumn);
-    endColumn = std::max(endColumn, other.endColumn);
-    firstRow = std::min(firstRow, other.firstRow);
-    endRow = std::max(endRow, other.endRow);
-  }
-};
-
 /** The radiograph of a model in one view: its blocks by bands of rows, in the order of their centres, each drawn whole
  * into a picture of the rows its band's blocks cover; these overlap and are added up in order. */
 class ModelProjection
 {
 public:
   ModelProjection(const ProjectionModel & model, const XRayGeometry::View & view)
-    : m_Model(model)
-    , m_Cells(model.Points(), model.Cells(), view, model.Parameters(), 1)
-    , m_Rays(m_Cells.Rays())
+    : m_View(model, view)
+    , m_Rays(m_View.Rays())
     , m_Bands(BandCount(view))
   {
     Distribute();
@@ -142,72 +116,22 @@ private:
     std::vector<float>                     sums;
     std::ptrdiff_t                         stride{ 0 };
   };
-  enum class Path
-  {
-    None,
-    Kernel,
-    General,
-  };
 
   void
   Distribute();
-  Path
-  FindRange(const Vector3 & centre, const Vector3 & halfSize, PixelRange & range, double & row) const;
   std::vector<int>
   ShareRows(const std::vector<std::size_t> & blocksOfRow) const;
   void
   DrawBand(Band & band, const projection::Kernels & kernels) const;
   void
   DrawGeneral(int firstRow, int endRow);
-  void
-  Add(const ProjectionModel::Blocks &   blocks,
-      const std::vector<std::int32_t> & chosen,
-      const projection::Kernels &       kernels,
-      const projection::Band &          target) const;
-  projection::BlockRun
-  MakeRun(const ProjectionModel::Blocks & blocks) const;
 
-  const ProjectionModel &   m_Model;
-  ProjectedCells            m_Cells;
+  ModelView                 m_View;
   const RayFrame &          m_Rays;
   std::vector<Band>         m_Bands;
   std::vector<std::int32_t> m_General; ///< cells
   std::vector<float>        m_GeneralSums;
 };
-
-/** Where a box is seen; row: of its centre. */
-ModelProjection::Path
-ModelProjection::FindRange(const Vector3 & centre, const Vector3 & halfSize, PixelRange & range, double & row) const
-{
-  const Eigen::Matrix3d & toPixel = m_Rays.ToPixel();
-  const Vector3           q = toPixel * (centre - m_Rays.Origin(0, 0));
-  const bool              parallel = m_Rays.IsParallel();
-  const auto              reach = [&](const Vector3 & gradient) { return gradient.cwiseAbs().dot(halfSize); };
-  const Vector3           perS = toPixel.row(0);
-  const double            depth = reach(perS), nearest = q[0] - depth, farthest = q[0] + depth;
-  // s at the detector is 1 with a point source, 0 in a parallel beam.
-  const double detector = m_Rays.DetectorDepth();
-  if (nearest >= detector || (!parallel && farthest <= 0))
-  {
-    return Path::None;
-  }
-  if (farthest > detector || (!parallel && nearest < nearSource))
-  {
-    return Path::General;
-  }
-  const auto limit = [&](int axis, int count, int & first, int & end) {
-    const double  at = parallel ? q[axis] : q[axis] / q[0];
-    const Vector3 gradient = toPixel.row(axis);
-    const double  half = parallel ? reach(gradient) : reach(gradient - at * perS) / nearest;
-    const double  low = std::max(at - half, -1.0), high = std::min(at + half, static_cast<double>(count));
-    first = std::max(0, static_cast<int>(low));
-    end = high < 0 ? 0 : std::min(count, static_cast<int>(high) + 1);
-    return at;
-  };
-  limit(1, m_Rays.Columns(), range.firstColumn, range.endColumn);
-  row = limit(2, m_Rays.Rows(), range.firstRow, range.endRow);
-  return range.IsEmpty() ? Path::None : Path::Kernel;
-}
 
 /** Band of each row, so that bands take about as long. */
 std::vector<int>
@@ -242,7 +166,7 @@ ModelProjection::Distribute()
   };
   std::vector<Place>       places;
   std::vector<std::size_t> blocksOfRow(m_Rays.Rows(), 0);
-  const auto &             sets = m_Model.ByDegree();
+  const auto &             sets = m_View.Model().ByDegree();
   for (std::size_t set = 0; set < sets.size(); ++set)
   {
     const ProjectionModel::Blocks & blocks = sets[set];
@@ -250,14 +174,14 @@ ModelProjection::Distribute()
     {
       Place      place{ static_cast<std::int32_t>(set), static_cast<std::int32_t>(b), 0, {} };
       double     row = 0;
-      const Path path = FindRange(blocks.centres[b], blocks.halfSizes[b], place.range, row);
-      if (path == Path::Kernel)
+      const auto path = m_View.FindRange(blocks, b, place.range, row);
+      if (path == ModelView::Path::Kernel)
       {
         place.row = static_cast<int>(std::clamp(row, 0.0, m_Rays.Rows() - 1.0));
         ++blocksOfRow[place.row];
         places.push_back(place);
       }
-      else if (path == Path::General)
+      else if (path == ModelView::Path::General)
       {
         const auto first = blocks.cells.begin() + static_cast<std::ptrdiff_t>(b * ProjectionModel::Blocks::size);
         std::copy_if(first, first + ProjectionModel::Blocks::size, std::back_inserter(m_General), [](std::int32_t t) {
@@ -283,71 +207,6 @@ ModelProjection::Distribute()
   }
 }
 
-projection::BlockRun
-ModelProjection::MakeRun(const ProjectionModel::Blocks & blocks) const
-{
-  const CellDensity &  density = m_Cells.Density();
-  const Vector3        origin = m_Rays.Origin(0, 0);
-  projection::BlockRun run{ nullptr,
-                            0,
-                            blocks.vertices.data(),
-                            blocks.coefficients.data(),
-                            blocks.cells.data(),
-                            density.Coefficients(0),
-                            density.Stride(),
-                            blocks.degree,
-                            m_Model.Parameters().scale,
-                            m_Model.Parameters().offset,
-                            { origin[0], origin[1], origin[2] },
-                            {},
-                            m_Rays.IsParallel() };
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      run.toPixel[i][k] = m_Rays.ToPixel()(i, k);
-    }
-  }
-  return run;
-}
-
-void
-ModelProjection::Add(const ProjectionModel::Blocks &   blocks,
-                     const std::vector<std::int32_t> & chosen,
-                     const projection::Kernels &       kernels,
-                     const projection::Band &          target) const
-{
-  projection::BlockRun run = MakeRun(blocks);
-  if (blocks.IsKept())
-  {
-    run.blocks = chosen.data();
-    run.count = chosen.size();
-    kernels.add(run, target);
-    return;
-  }
-  constexpr std::size_t     atOnce = 16, size = ProjectionModel::Blocks::size;
-  const std::size_t         perBlock = blocks.CoefficientsSize();
-  std::vector<std::int32_t> ids(atOnce), cells(atOnce * size);
-  std::vector<double>       vertices(atOnce * ProjectionModel::Blocks::verticesSize);
-  std::vector<float>        coefficients(atOnce * perBlock);
-  std::iota(ids.begin(), ids.end(), 0);
-  run.blocks = ids.data();
-  run.cells = cells.data();
-  run.vertices = vertices.data();
-  run.coefficients = coefficients.data();
-  for (std::size_t first = 0; first < chosen.size(); first += atOnce)
-  {
-    run.count = std::min(atOnce, chosen.size() - first);
-    for (std::size_t i = 0; i < run.count; ++i)
-    {
-      const auto block = static_cast<std::size_t>(chosen[first + i]);
-      std::copy_n(&blocks.cells[block * size], size, &cells[i * size]);
-      m_Model.Fill(blocks, block, &vertices[i * ProjectionModel::Blocks::verticesSize], &coefficients[i * perBlock]);
-    }
-    kernels.add(run, target);
-  }
-}
-
 void
 ModelProjection::DrawBand(Band & band, const projection::Kernels & kernels) const
 {
@@ -364,7 +223,9 @@ ModelProjection::DrawBand(Band & band, const projection::Kernels & kernels) cons
   {
     if (!band.blocks[set].empty())
     {
-      Add(m_Model.ByDegree()[set], band.blocks[set], kernels, target);
+      m_View.Run(m_View.Model().ByDegree()[set], band.blocks[set], [&](const projection::BlockRun & run) {
+        kernels.add(run, target);
+      });
     }
   }
 }
@@ -374,9 +235,9 @@ ModelProjection::DrawGeneral(int firstRow, int endRow)
 {
   for (std::int32_t t : m_General)
   {
-    m_Cells.ForEachChord(
+    m_View.Cells().ForEachChord(
       t, firstRow, endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric &) {
-        const double integral = m_Cells.Density().Integrate(t, chord.entry, chord.exit, chord.length);
+        const double integral = m_View.Cells().Density().Integrate(t, chord.entry, chord.exit, chord.length);
         m_GeneralSums[static_cast<std::size_t>(row) * m_Rays.Columns() + column] += static_cast<float>(integral);
       });
   }
@@ -435,6 +296,19 @@ ModelProjection::WriteRows(int firstRow, int endRow, float * image) const
     }
   }
 }
+void
+ProjectView(const ProjectionModel & model, const XRayGeometry::View & view, const Execution & execution, float * image)
+{
+  const projection::Kernels & kernels = projection::SelectKernels(model.Parameters().portable);
+  ModelProjection             projection(model, view);
+  execution.Part(0.0, 0.9).For(projection.Tasks(), [&](std::size_t task) { projection.Draw(task, kernels); });
+  constexpr int rowsAtOnce = 64;
+  const int     rows = view.size[1];
+  execution.Part(0.9, 1.0).For(static_cast<std::size_t>((rows + rowsAtOnce - 1) / rowsAtOnce), [&](std::size_t part) {
+    const int first = static_cast<int>(part) * rowsAtOnce;
+    projection.WriteRows(first, std::min(rows, first + rowsAtOnce), image);
+  });
+}
 } // namespace
 
 void
@@ -443,36 +317,17 @@ ProjectMesh(const ProjectionModel &                 model,
             const Execution &                       execution,
             const std::vector<float *> &            images)
 {
-  struct Part
+  // A thread draws a view alone, its pictures in the cache, where there are enough views for all threads.
+  if (views.size() >= execution.GetNumberOfWorkUnits())
   {
-    std::size_t view, task;
-  };
-  const projection::Kernels &                   kernels = projection::SelectKernels(model.Parameters().portable);
-  std::vector<std::unique_ptr<ModelProjection>> projections;
-  std::vector<Part>                             parts;
+    execution.For(views.size(), [&](std::size_t v) { ProjectView(model, views[v], execution, images[v]); });
+    return;
+  }
+  const auto share = 1.0 / static_cast<double>(views.size());
   for (std::size_t v = 0; v < views.size(); ++v)
   {
-    projections.push_back(std::make_unique<ModelProjection>(model, views[v]));
-    for (std::size_t task = 0; task < projections[v]->Tasks(); ++task)
-    {
-      parts.push_back({ v, task });
-    }
+    ProjectView(model, views[v], execution.Part(share * v, share * (v + 1)), images[v]);
   }
-  execution.Part(0.0, 0.9).For(parts.size(),
-                               [&](std::size_t i) { projections[parts[i].view]->Draw(parts[i].task, kernels); });
-  constexpr int rowsAtOnce = 128;
-  parts.clear();
-  for (std::size_t v = 0; v < views.size(); ++v)
-  {
-    for (int row = 0; row < views[v].size[1]; row += rowsAtOnce)
-    {
-      parts.push_back({ v, static_cast<std::size_t>(row) });
-    }
-  }
-  execution.Part(0.9, 1.0).For(parts.size(), [&](std::size_t i) {
-    const int first = static_cast<int>(parts[i].task), rows = views[parts[i].view].size[1];
-    projections[parts[i].view]->WriteRows(first, std::min(rows, first + rowsAtOnce), images[parts[i].view]);
-  });
 }
 
 void

@@ -44,6 +44,29 @@ struct LayerMultinomials
 template <int N>
 constexpr LayerMultinomials<N> layerMultinomials;
 
+/** The same by their places in an expansion. */
+template <int N>
+struct LayerFactors
+{
+  double of[CoefficientCount(N)]{};
+  constexpr LayerFactors()
+  {
+    int p = 0;
+    for (int jkl = 0; jkl <= N; ++jkl)
+    {
+      for (int kl = 0; kl <= jkl; ++kl)
+      {
+        for (int l = 0; l <= kl; ++l)
+        {
+          of[p++] = factorial[jkl] / (factorial[jkl - kl] * factorial[kl - l] * factorial[l]);
+        }
+      }
+    }
+  }
+};
+template <int N>
+constexpr LayerFactors<N> layerFactors;
+
 /** Which coefficients of degree D to subtract from which others, in turn, until each is the difference of as many steps
  * from the first vertex to the others as its index says. */
 template <int D>
@@ -117,6 +140,39 @@ ExpandLayers(const Octet * net, float * expansion)
       lower[p] = 0.25 * (net[p] + net[raise.second[p]] + net[raise.third[p]] + net[raise.third[p] + 1]);
     });
     ExpandLayers<N, D - 1>(lower, expansion);
+  }
+}
+
+/** The transpose of ExpandLayers, up to layer D: from derivatives by the numbers of an expansion to those by
+ * coefficients of degree D that have N - D arguments at the centroid. */
+template <int N, int D = N>
+inline __attribute__((always_inline)) void
+CollectLayers(const Octet * expansion, Octet * net)
+{
+  if constexpr (D == 0)
+  {
+    net[0] = expansion[0];
+  }
+  else
+  {
+    constexpr int    count = CoefficientCount(D), below = CoefficientCount(D - 1), steps = DifferenceSteps<D>::count;
+    constexpr double choices = factorial[N] / (factorial[D] * factorial[N - D]);
+    Repeat<count>([&](int p) __attribute__((always_inline)) { net[p] = p < below ? Octet{} : choices * expansion[p]; });
+    Repeat<3>([&](int axis) __attribute__((always_inline)) {
+      Repeat<steps / 3>([&](int i) __attribute__((always_inline)) {
+        const int step = steps - 1 - axis * (steps / 3) - i;
+        net[differenceSteps<D>.from[step]] -= net[differenceSteps<D>.to[step]];
+      });
+    });
+    Octet lower[below];
+    CollectLayers<N, D - 1>(expansion, lower);
+    Repeat<below>([&](int p) __attribute__((always_inline)) {
+      const Octet share = 0.25 * lower[p];
+      net[p] += share;
+      net[raise.second[p]] += share;
+      net[raise.third[p]] += share;
+      net[raise.third[p] + 1] += share;
+    });
   }
 }
 

@@ -18,6 +18,7 @@
 #define BONE_PROJECTION_TILE_ROWS 1
 #include "boneBlockKernel.hxx"
 
+#include "boneAdjointKernel.hxx"
 #include "boneDerivativeKernel.hxx"
 
 #if defined(__clang__)
@@ -30,7 +31,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx2Kernels = { avx2::Expand, avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinCells };
+const Kernels avx2Kernels = { avx2::Expand, avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinBlocks };
 } // namespace projection
 } // namespace bone
 

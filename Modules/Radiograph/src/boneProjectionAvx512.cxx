@@ -16,6 +16,7 @@
 #define BONE_PROJECTION_TILE_ROWS 2
 #include "boneBlockKernel.hxx"
 
+#include "boneAdjointKernel.hxx"
 #include "boneDerivativeKernel.hxx"
 
 #if defined(__clang__)
@@ -28,7 +29,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx512Kernels = { avx512::Expand, avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinCells };
+const Kernels avx512Kernels = { avx512::Expand, avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinBlocks };
 } // namespace projection
 } // namespace bone
 

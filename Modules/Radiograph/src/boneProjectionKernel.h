@@ -15,7 +15,7 @@ namespace projection
 /** Pixels that are computed at once; a band's rows are padded by as many. */
 constexpr int lanes = 8;
 
-/** Rows after a band's last, and columns after its last, that Kernels::add may write to. */
+/** Rows after a band's last, and columns after its last, that Kernels::add may write to and Kernels::adjoin read. */
 constexpr int spareRows = 1;
 constexpr int spareColumns = 16;
 
@@ -89,15 +89,15 @@ struct Derivatives
   std::ptrdiff_t         next[groupSize];        ///< where their coefficients begin
 };
 
-/** The task of Kernels::adjoin: sums over the pixels, whose weights the band holds. */
+/** The results of Kernels::adjoin: derivatives of the sum over the band's pixels of their numbers times the integrals.
+ */
 struct Adjoint
 {
-  double * basis[groupSize];     ///< of each cell: weight times integral of each Bernstein polynomial; not scaled
-  double * positions[groupSize]; ///< of each cell, or all null: 4 vertices x 3, by their displacements
+  double * coefficients; ///< of each cell, as far apart as BlockRun::density
+  double * positions;    ///< of each cell: 4 vertices x 3, in space; or null
 };
 
-/** The kernels of one instruction set. Kernels that take a group take 1..groupSize tetrahedra of one degree and fill
- * the group up beyond `count`. */
+/** The kernels of one instruction set. A group has 1..groupSize tetrahedra of one degree. */
 struct Kernels
 {
   /** Replaces a block's Bernstein coefficients by their expansions, see bonePowerKernel.hxx. */
@@ -106,8 +106,8 @@ struct Kernels
   void (*add)(const BlockRun & run, const Band & band);
   /** The same for a group, with derivatives; fills the group up. */
   void (*derive)(CellGroup & group, const Derivatives & derivatives, const Band & band);
-  /** Sets the sums of each cell that the band sees. */
-  void (*adjoin)(CellGroup & group, const Adjoint & adjoint, const Band & band);
+  /** Sets the derivatives of each cell of the run; the band is read. */
+  void (*adjoin)(const BlockRun & run, const Adjoint & adjoint, const Band & band);
 };
 
 extern const Kernels portableKernels;

@@ -12,13 +12,17 @@
 #define BONE_PROJECTION_TILE_ROWS 1
 #include "boneBlockKernel.hxx"
 
+#include "boneAdjointKernel.hxx"
 #include "boneDerivativeKernel.hxx"
 
 namespace bone
 {
 namespace projection
 {
-const Kernels portableKernels = { portable::Expand, portable::AddBlocks, portable::DeriveCells, portable::AdjoinCells };
+const Kernels portableKernels = { portable::Expand,
+                                  portable::AddBlocks,
+                                  portable::DeriveCells,
+                                  portable::AdjoinBlocks };
 
 const Kernels &
 SelectKernels(bool portable)

@@ -14,6 +14,9 @@
 // Both kinds of terms serve all modes: a mode's part is the sum of the terms times its coefficients or displacements in
 // the cell. The pixels of a cell are listed one after another, whatever their rows, so that no lane is left empty.
 
+#ifndef boneRayTerms_hxx
+#define boneRayTerms_hxx
+
 namespace bone
 {
 namespace projection
@@ -489,13 +492,15 @@ ForEachPixelList(const Frame & frame, const Band & band, PixelList<TReal> & list
   }
 }
 
+/** Of barycentric coordinates over a cell's frame, for single precision: how much rounding grows. */
+constexpr double largestReach = 64;
+
 /** Calls function(member, frame, exact) for the cells of the group that the band sees; `exact` where they need double
  * precision. */
 template <typename TFunction>
 inline void
 ForEachSeen(const CellGroup & group, const GroupFrame & groupFrame, const Band & band, const TFunction & function)
 {
-  constexpr double largestReach = 64; // of barycentric coordinates over the cell's frame: how much rounding grows
   for (int g = 0; g < group.count; ++g)
   {
     double reach = 0;
@@ -514,3 +519,5 @@ ForEachSeen(const CellGroup & group, const GroupFrame & groupFrame, const Band &
 } // namespace BONE_PROJECTION_NAMESPACE
 } // namespace projection
 } // namespace bone
+
+#endif

@@ -20,14 +20,16 @@ namespace BONE_PROJECTION_NAMESPACE
 /** Of higher degrees a polynomial reduced to the column, as in strips, costs less than one at each pixel. */
 constexpr int maximumSpanDegree = 3;
 
-/** Cells whose bounding box has more pixels, or more rows or columns than a byte counts, take strips. */
-constexpr int maximumSpanBox = 384;
+/** Cells whose bounding box has more rows or columns than a byte counts do not fit, nor those with more pixels. An image
+ * takes less time with strips from a smaller box on. */
+constexpr int maximumSpanBox = 1024;
+constexpr int imageSpanBox = 384;
 constexpr int maximumSpanSide = 256;
 
 inline bool
-FitsSpans(const PixelBox & box)
+FitsSpans(const PixelBox & box, int most = maximumSpanBox)
 {
-  return box.Pixels() <= maximumSpanBox && box.endRow - box.firstRow <= maximumSpanSide &&
+  return box.Pixels() <= most && box.endRow - box.firstRow <= maximumSpanSide &&
          box.endColumn - box.firstColumn <= maximumSpanSide;
 }
 
@@ -37,6 +39,7 @@ struct BlockShape
   static constexpr int limits = 4;
 
   Batch      depth[4][3];                     ///< of the face planes, fronts first: at the centre, per column, per row
+  BatchIndex face[4];                         ///< the vertex opposite to each
   BatchIndex fronts;                          ///< how many of them are
   Batch      low[limits][2], high[limits][2]; ///< column limits less c0: at r0, per row; far away where there is none
   Batch      noFront[2];                      ///< 0 where the second, the third plane is a front, else far beyond
@@ -68,6 +71,9 @@ SortPlanes(BlockShape & shape, BatchIndex (&front)[4])
     const BatchIndex swapped = ~front[i] & front[j];
     front[i] |= swapped;
     front[j] &= ~swapped;
+    const BatchIndex of = shape.face[i], other = shape.face[j];
+    shape.face[i] = swapped ? other : of;
+    shape.face[j] = swapped ? of : other;
     for (int k = 0; k < 3; ++k)
     {
       const Batch a = shape.depth[i][k], b = shape.depth[j][k];
@@ -105,6 +111,7 @@ SetShape(const Frames<Octet> & frames, BlockShape & shape)
     {
       shape.depth[i][k] = Narrow(frames.depth[i][k]);
     }
+    shape.face[i] = BatchIndex{} + i;
     front[i] = Narrow(frames.slope[i]) < 0;
     shape.fronts -= front[i];
   }
@@ -158,9 +165,9 @@ struct SpanPiece
 struct SpanList
 {
   static constexpr int pixelCapacity = lanes * (maximumSpanBox + 2 * tileLanes);
-  static constexpr int pieceCapacity = lanes * 32; ///< a box that FitsSpans has at most 32 of 8 x 8
+  static constexpr int pieceCapacity = lanes * 64; ///< a box that FitsSpans has fewer of 8 x 8
   static constexpr int rowCapacity = pieceCapacity * tileLanes;
-  static constexpr int tilesOfCell = 64; ///< at least as many as a cell that FitsSpans has
+  static constexpr int tilesOfCell = 160; ///< at least as many as a cell that FitsSpans has
 
   Tile           x[pixelCapacity / tileLanes], y[pixelCapacity / tileLanes]; ///< of the chord's middle, see MeanAlong
   Tile           z[pixelCapacity / tileLanes];

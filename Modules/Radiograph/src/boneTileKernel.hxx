@@ -55,6 +55,21 @@ StoreVector(TValue * to, const TVector & value)
   __builtin_memcpy(to, &value, sizeof(value));
 }
 
+/** Rows of eight become columns. */
+inline void
+TransposeBlock(const Batch (&from)[lanes], Batch (&to)[lanes])
+{
+  Batch low[lanes], high[lanes];
+  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[0]), low);
+  Transpose(reinterpret_cast<const Batch(&)[groupSize]>(from[groupSize]), high);
+  // Of low: column k in its first half, column k + 4 in its second, of rows 0..3; high: of rows 4..7.
+  for (int k = 0; k < groupSize; ++k)
+  {
+    to[k] = __builtin_shufflevector(low[k], high[k], 0, 1, 2, 3, 8, 9, 10, 11);
+    to[k + groupSize] = __builtin_shufflevector(low[k], high[k], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
 /** Mean of the polynomial in z over [middle - length / 2, middle + length / 2]. */
 template <int N>
 inline Tile

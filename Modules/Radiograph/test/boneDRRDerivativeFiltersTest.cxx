@@ -43,7 +43,8 @@ Look(const Vector3 & beam, int pixels = 40)
   geometry->SetView(XRayGeometry::Framing(lower, upper, beam.normalized(), Vector3::UnitZ(), 400, 600, pixels));
   return geometry;
 }
-const Vector3 front(0.4, 1, 0.2);
+// Along the grid's planes rays would pass through edges, where an image has no derivative.
+const Vector3 front(0.4, 1, 0.2), side(1, 0.1, 0.05);
 
 RadiographModes
 Modes(const MeshArrays & arrays)
@@ -173,7 +174,7 @@ TEST(DRRAdjointFilter, IsTheTransposeSummedOverTheViews)
   {
     auto forward = Forward::New();
     forward->SetInput(mesh);
-    forward->SetGeometry(view == 0 ? Look(front) : Look(Vector3::UnitX(), 31));
+    forward->SetGeometry(view == 0 ? Look(front) : Look(side, 31));
     forward->SetHUToAttenuation(HUToAttenuation::WaterScaled);
     forward->SetModes(modes);
     forward->Update();
@@ -201,7 +202,7 @@ TEST(DRRAdjointFilter, IsTheTransposeSummedOverTheViews)
     byShape += backward->GetPointGradient()[p].dot(modes.shape[0][p]);
   }
   EXPECT_NEAR(byDensity, forwardDensity, 1e-5 * std::abs(forwardDensity));
-  EXPECT_NEAR(byShape, forwardShape, 1e-5 * std::abs(forwardDensity));
+  EXPECT_NEAR(byShape, forwardShape, 1e-5 * std::abs(forwardShape));
 }
 
 TEST(DRRAdjointFilter, DoesNotDependOnThreadsAndRunsAgainOnlyAfterAChange)

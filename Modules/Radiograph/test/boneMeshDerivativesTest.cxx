@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace
 {
 using namespace bone;
@@ -354,4 +356,97 @@ TEST(MeshDerivatives, DoNotDependOnTheOrderOfWorkAndLittleOnTheInstructions)
     different += std::abs(plain.derivatives[i] - images.derivatives[i]) > 1e-4 * largest ? 1 : 0;
   }
   EXPECT_LT(different, plain.derivatives.size() / 1000) << "at an edge another face may count";
+}
+
+TEST(MeshDerivatives, TheAdjointIsTheTransposeForEachOfManyCells)
+{
+  auto mesh = test::GridMesh({ { 8, 7, 6 } }, Vector3(-20, -15, -10), Vector3(5, 5, 4), 0.2);
+  test::SetRandom(mesh, 2, 3);
+  View view = Look(false);
+  view.spacing *= 0.5;
+  view.size = { { 66, 58 } };
+  std::vector<float> weights(static_cast<std::size_t>(view.size[0]) * view.size[1]), image(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i)
+  {
+    weights[i] = 1.0f + static_cast<float>(i % 7);
+  }
+  std::vector<double>  coefficients(mesh.coefficients.size());
+  std::vector<Vector3> positions(mesh.points.size());
+  BackprojectToMesh(mesh.points, mesh, view, {}, execution, weights.data(), coefficients.data(), positions.data());
+  const std::size_t stride = BernsteinCount(mesh.maximumDegree);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); t += 37)
+  {
+    // The tetrahedron alone.
+    MeshArrays alone = mesh;
+    alone.region.assign(mesh.tetrahedra.size(), 1);
+    alone.region[t] = 2;
+    MeshRadiographParameters parameters;
+    parameters.minimumRegion = 2;
+    ProjectMesh(alone.points, alone, view, parameters, execution, image.data());
+    const double forward = std::inner_product(image.begin(), image.end(), weights.begin(), 0.0);
+    const double backward = std::inner_product(
+      &coefficients[t * stride], &coefficients[t * stride] + stride, &mesh.coefficients[t * stride], 0.0);
+    EXPECT_NEAR(backward, forward, 1e-5 * std::abs(forward)) << t;
+  }
+}
+
+TEST(MeshDerivatives, TheAdjointDoesNotDependOnTheOrderOfWorkNorOnAKeptModelAndLittleOnTheInstructions)
+{
+  // From cells of many pixels, in rows longer than a vector, to cells between the pixels.
+  for (int pixels : { 7, 40, 300 })
+  {
+    SCOPED_TRACE(pixels);
+    auto mesh = Staircase(3, true);
+    std::fill(mesh.degree.begin() + mesh.degree.size() / 2, mesh.degree.end(), 3);
+    View view = Look(false);
+    view.spacing *= 33.0 / pixels;
+    view.size = { { pixels, pixels } };
+    std::vector<float> weights(static_cast<std::size_t>(pixels) * pixels);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+      weights[i] = static_cast<float>(i % 5) - 1.0f;
+    }
+    struct Gradients
+    {
+      std::vector<double>  coefficients;
+      std::vector<Vector3> positions;
+    };
+    const auto make = [&](bool kept, bool portable) {
+      MeshRadiographParameters parameters;
+      parameters.portable = portable;
+      Gradients             gradients{ std::vector<double>(mesh.coefficients.size(), 7),
+                           std::vector<Vector3>(mesh.points.size(), Vector3(7, 7, 7)) };
+      const ProjectionModel model(mesh.points, mesh, parameters, execution, kept);
+      BackprojectToMesh(
+        model, view, execution, weights.data(), gradients.coefficients.data(), gradients.positions.data());
+      return gradients;
+    };
+    const Gradients expected = make(true, false), plain = make(true, true);
+    Gradients       other = make(false, false);
+    EXPECT_EQ(other.coefficients, expected.coefficients);
+    EXPECT_EQ(other.positions, expected.positions);
+    // Within a loop's body loops run on one thread, in order.
+    execution.For(2, [&](std::size_t i) { i == 0 ? void(other = make(true, false)) : void(); });
+    EXPECT_EQ(other.coefficients, expected.coefficients);
+    EXPECT_EQ(other.positions, expected.positions);
+    double largest = 0, farthest = 0;
+    for (double c : expected.coefficients)
+    {
+      largest = std::max(largest, std::abs(c));
+    }
+    for (const Vector3 & x : expected.positions)
+    {
+      farthest = std::max(farthest, x.norm());
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_GT(farthest, 0);
+    for (std::size_t c = 0; c < plain.coefficients.size(); ++c)
+    {
+      ASSERT_NEAR(plain.coefficients[c], expected.coefficients[c], 1e-5 * largest) << c;
+    }
+    for (std::size_t v = 0; v < plain.positions.size(); ++v)
+    {
+      ASSERT_LT((plain.positions[v] - expected.positions[v]).norm(), 1e-4 * farthest) << v;
+    }
+  }
 }

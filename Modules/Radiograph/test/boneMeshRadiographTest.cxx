@@ -238,6 +238,39 @@ TEST(MeshRadiograph, SeveralViewsInOneCallAreThoseOfEach)
   }
 }
 
+TEST(MeshRadiograph, ManyPosesInOneCallAreThoseOfEachOnOneThreadAndOnAll)
+{
+  auto mesh = Staircase();
+  test::SetRandom(mesh, 3, 8);
+  const ProjectionModel model(mesh.points, mesh, {}, Execution());
+  std::vector<View>     views(64, Oblique(false, 48));
+  const std::size_t     pixels = static_cast<std::size_t>(views[0].size[0]) * views[0].size[1];
+  const std::size_t     all = pixels * views.size();
+  ASSERT_GE(views.size(), Execution().GetNumberOfWorkUnits());
+  std::vector<float>   images(all, -1), onOneThread(all, -1), alone(pixels);
+  std::vector<float *> pointers, pointersOnOneThread;
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    views[i].source += Vector3(2.0 * static_cast<double>(i % 8), 3.0 * static_cast<double>(i / 8), 0);
+    pointers.push_back(&images[i * pixels]);
+    pointersOnOneThread.push_back(&onOneThread[i * pixels]);
+  }
+  ProjectMesh(model, views, Execution(), pointers);
+  // Within a loop's body loops run on one thread, in order.
+  Execution().For(2, [&](std::size_t i) {
+    if (i == 0)
+    {
+      ProjectMesh(model, views, Execution(), pointersOnOneThread);
+    }
+  });
+  EXPECT_EQ(images, onOneThread);
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    ProjectMesh(model, { views[i] }, Execution(), { alone.data() });
+    EXPECT_TRUE(std::equal(alone.begin(), alone.end(), pointers[i])) << i;
+  }
+}
+
 TEST(MeshRadiograph, AKeptModelGivesTheImagesOfTheMesh)
 {
   auto mesh = Staircase();

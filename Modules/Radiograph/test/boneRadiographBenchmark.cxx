@@ -4,7 +4,6 @@
 #include "boneMeshDerivatives.h"
 
 #include "boneMeshWalk.h"
-#include "boneProjectionModel.h"
 #include "boneRadiographTestMeshes.h"
 #include "boneVoxelRadiograph.h"
 
@@ -72,6 +71,31 @@ ProjectionOnce(benchmark::State & state)
   }
 }
 
+/** Poses of a search: 64 views of 128 x 128 pixels in one call. */
+void
+Search(benchmark::State & state)
+{
+  const auto            mesh = Block(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const ProjectionModel model(mesh.points, mesh, {}, execution);
+  auto                  view = FramedView();
+  view.spacing *= view.size[0] / 128.0;
+  view.size = { { 128, 128 } };
+  std::vector<XRayGeometry::View> views(64, view);
+  std::vector<float>              images(views.size() * 128 * 128);
+  std::vector<float *>            pointers;
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    views[i].source.x() += static_cast<double>(i);
+    pointers.push_back(&images[i * 128 * 128]);
+  }
+  for (auto _ : state)
+  {
+    ProjectMesh(model, views, execution, pointers);
+  }
+  state.counters["views_per_second"] =
+    benchmark::Counter(static_cast<double>(views.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
 /** The image with its derivatives by 6 pose, 10 shape and 10 density modes. */
 void
 Derivatives(benchmark::State & state)
@@ -106,9 +130,10 @@ Backprojection(benchmark::State & state)
   const std::vector<float>   image(static_cast<std::size_t>(view.size[0]) * view.size[1], 1.0f);
   std::vector<double>        coefficients(mesh.coefficients.size());
   std::vector<bone::Vector3> positions(mesh.points.size());
+  const ProjectionModel      model(mesh.points, mesh, {}, execution);
   for (auto _ : state)
   {
-    BackprojectToMesh(mesh.points, mesh, view, {}, execution, image.data(), coefficients.data(), positions.data());
+    BackprojectToMesh(model, view, execution, image.data(), coefficients.data(), positions.data());
   }
 }
 
@@ -163,6 +188,7 @@ BENCHMARK(Derivatives)
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime()
   ->UseRealTime();
+BENCHMARK(Search)->Args({ 2500, 3 })->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(Backprojection)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(Voxels)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Walk)->Args({ 33000, 3 })->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -130,7 +130,7 @@ Projector::Backproject(const XRayGeometry::View & stated, const PoseParameters &
   Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Zero();
   {
     const py::gil_scoped_release release;
-    BackprojectToMesh(m_Arrays.points, m_Arrays, view, m_Parameters, Execution(), weights, numbers, positions);
+    BackprojectToMesh(*m_Model, view, Execution(), weights, numbers, positions);
     for (std::size_t p = 0; p < m_Arrays.points.size(); ++p)
     {
       motion.head<3>() += positions[p];

@@ -23,12 +23,11 @@ main(int argc, char ** argv)
     std::cerr << "usage: bonePoseRate MODEL.vtu GEOMETRY.json CALLS\n";
     return EXIT_FAILURE;
   }
-  const bone::MeshArrays               mesh = bone::ReadMeshArrays(argv[1]);
-  const auto                           view = bone::ReadGeometry(argv[2]).front()->GetView();
-  const int                            calls = std::atoi(argv[3]);
-  const bone::MeshRadiographParameters parameters;
-  const bone::Execution                execution;
-  const bone::ProjectionModel          model(mesh.points, mesh, parameters, execution);
+  const bone::MeshArrays      mesh = bone::ReadMeshArrays(argv[1]);
+  const auto                  view = bone::ReadGeometry(argv[2]).front()->GetView();
+  const int                   calls = std::atoi(argv[3]);
+  const bone::Execution       execution;
+  const bone::ProjectionModel model(mesh.points, mesh, {}, execution);
 
   const std::size_t          pixels = static_cast<std::size_t>(view.size[0]) * static_cast<std::size_t>(view.size[1]);
   std::vector<float>         image(pixels);
@@ -49,8 +48,7 @@ main(int argc, char ** argv)
       bone::ProjectMesh(model, { moved }, execution, { image.data() });
       if (backward)
       {
-        bone::BackprojectToMesh(
-          mesh.points, mesh, moved, parameters, execution, image.data(), coefficients.data(), positions.data());
+        bone::BackprojectToMesh(model, moved, execution, image.data(), coefficients.data(), positions.data());
       }
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
