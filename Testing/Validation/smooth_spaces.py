@@ -160,6 +160,7 @@ def text():
     lines = ["| space | free coefficients | error (HU, root mean square) | largest jump of the gradient (HU/mm) |", "|---|---|---|---|"]
     lines += [f"| {name} | {count} | {error:.3g} | {jump:.1e} |" for name, count, error, jump in rows()]
     return "\n".join(lines) + f"""
+
 In a block of {len(cells)} tetrahedra and {len(points)} points, {larger[0]} splines of degree 2 and {larger[1]} of degree 3 have a
 continuous gradient on tetrahedra that are not split; global polynomials are 10 and 20.
 """
