@@ -88,6 +88,10 @@ def triangle_weights(degree, places):
     return numpy.stack([weight * numpy.prod(places ** term, axis=1) for weight, term in zip(weights, terms)], axis=1)
 
 
+def coefficients_of(model):
+    return vtk_to_numpy(read_grid(model).GetCellData().GetArray("DensityCoefficients"))
+
+
 class Cut:
     """A page's cut across an axis: triangles, each with a polynomial."""
 
@@ -265,7 +269,9 @@ class Beads(unittest.TestCase):
             print(f"{plane:9}{k // 3 + 1:6}{len(differences):7}  {differences.mean():.2f}, {differences.max():.1f}")
             self.assertGreater(len(differences), 30000)
             self.assertLess(alone, 0.002 * len(differences))
-            self.assertLess(differences.mean(), 1.0)
+            # A page rounds coefficients to a 500th of the range of 98 % of them: by a quarter of that on average, points besides.
+            step = numpy.ptp(numpy.percentile(coefficients_of(model), (1, 99))) / 500
+            self.assertLess(differences.mean(), 0.5 * step)
 
     def test_radiographs_show_each_bead_where_the_geometry_projects_it(self):
         for seen in self.seen.values():
