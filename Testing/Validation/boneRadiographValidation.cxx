@@ -133,15 +133,14 @@ TimeDerivatives(const std::string & path, const XRayGeometry::View & view)
   std::vector<double>      coefficients(mesh.coefficients.size());
   std::vector<Vector3>     positions(mesh.points.size());
   const auto               draw = [&]() { ProjectMesh(model, { view }, TwoThreads(), { image.data() }); };
-  Time(
-    { { "image", draw },
-      { "derivatives", [&]() { ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, TwoThreads(), pointers); } },
-      { "adjoint",
-        [&]() {
-          draw();
-          BackprojectToMesh(model, view, TwoThreads(), weights.data(), coefficients.data(), positions.data());
-        } } },
-    60);
+  Time({ { "image", draw },
+         { "derivatives", [&]() { ProjectMeshDerivatives(model, view, modes, TwoThreads(), pointers); } },
+         { "adjoint",
+           [&]() {
+             draw();
+             BackprojectToMesh(model, view, TwoThreads(), weights.data(), coefficients.data(), positions.data());
+           } } },
+       60);
 }
 
 /** 64 poses before a detector of 128 x 128 pixels, in one call and one by one. */

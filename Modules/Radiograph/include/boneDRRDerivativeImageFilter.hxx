@@ -43,8 +43,9 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vecto
                                                                 const Execution &                       execution,
                                                                 const std::vector<float *> &            integrals)
 {
-  const std::vector<Vector3> points = this->GetVerifiedPoints();
-  const MeshCells &          cells = this->GetInput()->GetCells();
+  const ProjectionModel &      model = this->GetModel(execution.Silent());
+  const std::vector<Vector3> & points = model.Points();
+  const MeshCells &            cells = model.Cells();
   for (std::size_t m = 0; m < m_Modes.shape.size(); ++m)
   {
     const auto & mode = m_Modes.shape[m];
@@ -65,7 +66,7 @@ DRRDerivativeImageFilter<TMesh, TOutputImage>::ComputeIntegrals(const std::vecto
                                         << cells.coefficients.size() << ", one a coefficient, all finite.");
     }
   }
-  ProjectMeshDerivatives(points, cells, views[0], this->GetMeshRadiographParameters(), m_Modes, execution, integrals);
+  ProjectMeshDerivatives(model, views[0], m_Modes, execution, integrals);
 }
 
 template <typename TMesh, typename TOutputImage>

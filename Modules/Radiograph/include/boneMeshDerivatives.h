@@ -44,6 +44,14 @@ ProjectMeshDerivatives(const std::vector<Vector3> &     points,
                        const Execution &                execution,
                        const std::vector<float *> &     images);
 
+/** The same for a model that is kept. */
+void
+ProjectMeshDerivatives(const ProjectionModel &      model,
+                       const XRayGeometry::View &   view,
+                       const RadiographModes &      modes,
+                       const Execution &            execution,
+                       const std::vector<float *> & images);
+
 /** \brief The adjoint: for f = sum over the pixels of image * ProjectMesh(...), the derivatives of f.
  *
  * `coefficients` receives df / dc for each of MeshCells::coefficients (0 for cells not selected; the projection being

@@ -13,7 +13,7 @@
 // are summed. A pixel thus adds to 20 sums (degree 3) of one face each where it enters and leaves, whatever derivatives
 // are wanted. Cells that spans do not suit take boneRayTerms.hxx.
 
-#include "boneBlockSetup.hxx"
+#include "boneRayChords.hxx"
 #include "boneRayTerms.hxx"
 
 namespace bone
@@ -102,93 +102,20 @@ private:
   Lanes        m_Vertex[vertexTerms] = {};
 };
 
-/** Cells in a list of spans with the weights of their pixels. */
-struct WeightedSpans
-{
-  static constexpr int capacity = SpanList::pixelCapacity / tileLanes;
-
-  alignas(64) float weight[SpanList::pixelCapacity];
-  Tile      column[capacity], row[capacity]; ///< less c0 and r0; what follows is 0 where a ray misses the cell
-  Tile      z[capacity], half[capacity];     ///< the chord's middle, and half its length
-  TileIndex entry[capacity], exit[capacity]; ///< the planes, in the order of BlockShape
-};
-
 /** Reads the image at the pixels of the list. */
 inline __attribute__((always_inline)) void
-ReadWeights(const SpanList & list, const Band & band, WeightedSpans & spans)
+ReadWeights(const SpanList & list, const Band & band, float * weights)
 {
   const Tile      zero{};
   const TileIndex index = __builtin_convertvector(TileLanes(), TileIndex);
   for (int i = 0; i < list.pixels; i += tileLanes)
   {
-    StoreVector(spans.weight + i, zero);
+    StoreVector(weights + i, zero);
   }
   for (int row = 0; row < list.rows; ++row)
   {
-    StoreVector(spans.weight + list.from[row],
-                index < list.count[row] ? LoadVector<Tile>(band.data + list.out[row]) : zero);
+    StoreVector(weights + list.from[row], index < list.count[row] ? LoadVector<Tile>(band.data + list.out[row]) : zero);
   }
-}
-
-inline void
-SetWeightedChords(const BlockShape & shape, const SpanList & list, WeightedSpans & spans)
-{
-  const Tile      zero{};
-  const TileIndex none{};
-  for (int i = 0; i < list.pixels; i += tileLanes)
-  {
-    const int           tile = i / tileLanes, g = list.cellOf[tile];
-    const float * const plane = reinterpret_cast<const float *>(shape.depth) + g;
-    const TileIndex     place = __builtin_convertvector(LoadVector<TilePlaces>(list.place + i), TileIndex);
-    const Tile          c = __builtin_convertvector(place & 255, Tile) + list.column[g];
-    const Tile          r = __builtin_convertvector(place >> 8, Tile) + list.row[g];
-    const auto          at = [&](int p) __attribute__((always_inline))
-    {
-      const float * const of = plane + 3 * p * lanes;
-      return of[0] + of[lanes] * c + of[2 * lanes] * r;
-    };
-    Tile       entry = at(0), exit = at(3);
-    TileIndex  in = none, out = none + 3;
-    const auto meet = [&](int p) __attribute__((always_inline))
-    {
-      const Tile depth = at(p), front = depth + shape.noFront[p - 1][g], back = depth + shape.noBack[p - 1][g];
-      in = front < entry ? none + p : in;
-      entry = front < entry ? front : entry;
-      out = back > exit ? none + p : out;
-      exit = back > exit ? back : exit;
-    };
-    meet(1);
-    meet(2);
-    const Chord     chord(entry, exit, shape.kappa[g]);
-    const TileIndex hit = (entry > exit) & (LoadVector<Tile>(spans.weight + i) != 0);
-    spans.column[tile] = hit ? c : zero;
-    spans.row[tile] = hit ? r : zero;
-    spans.z[tile] = hit ? chord.middle : zero;
-    spans.half[tile] = hit ? 0.5f * chord.length : zero;
-    spans.entry[tile] = hit ? in : none - 1;
-    spans.exit[tile] = hit ? out : none - 1;
-  }
-}
-
-/** What of a polynomial has at least X^A Y^B z^K, divided by these; `q` points to a lane of Monomials. */
-template <int N, int A = 0, int B = 0, int K = 0>
-inline __attribute__((always_inline)) Tile
-ValueAt(const float * q, const Tile & x, const Tile & y, const Tile & z)
-{
-  Tile value = Tile{} + q[((A * (N + 1) + B) * (N + 1) + K) * lanes];
-  if constexpr (A + B + K < N)
-  {
-    value += z * ValueAt<N, A, B, K + 1>(q, x, y, z);
-    if constexpr (K == 0)
-    {
-      value += y * ValueAt<N, A, B + 1, 0>(q, x, y, z);
-    }
-    if constexpr (B == 0 && K == 0)
-    {
-      value += x * ValueAt<N, A + 1, 0, 0>(q, x, y, z);
-    }
-  }
-  return value;
 }
 
 /** The sums of a block's cells. */
@@ -370,7 +297,7 @@ public:
     group.parallel = m_Run.parallel;
     int members[groupSize];
     Fetch(next);
-    const BatchIndex precise = m_Exact | m_Fine | FindFarReaching();
+    const BatchIndex precise = m_Exact | m_Fine | this->FindFarReaching();
     for (int g = 0; g < lanes && m_Cells[g] >= 0; ++g)
     {
       const PixelBox box = this->BoxOf(g);
@@ -406,8 +333,8 @@ public:
       }
       SetRows(m_Shape, m_Band.stride, m_Spans);
       SetPixels(m_Spans);
-      ReadWeights(m_Spans, m_Band, m_Weighted);
-      SetWeightedChords(m_Shape, m_Spans, m_Weighted);
+      ReadWeights(m_Spans, m_Band, m_Weights);
+      SetRayChords<true>(m_Shape, m_Spans, m_Weights, m_Chords);
       SumSpans();
       WriteSums(inSpans);
     }
@@ -415,7 +342,7 @@ public:
 
 private:
   /** What is written of the cells of a block to come. */
-  void
+  inline __attribute__((always_inline)) void
   Fetch(std::size_t block) const
   {
     const std::int32_t * const cells = m_Run.cells + block * lanes;
@@ -449,19 +376,6 @@ private:
     {
       PositionsOf(cell)[q] = 0;
     }
-  }
-
-  /** Cells whose barycentric coordinates reach far over the cell's frame: how much rounding grows. */
-  BatchIndex
-  FindFarReaching() const
-  {
-    BatchIndex found{};
-    for (int i = 0; i < 4; ++i)
-    {
-      const Octet reach = Absolute(m_Frames.mu[0][i]) + m_Frames.inPlane[i] + Absolute(m_Frames.mu[3][i]);
-      found |= ~__builtin_convertvector(reach <= largestReach, BatchIndex);
-    }
-    return found;
   }
 
   void
@@ -525,8 +439,8 @@ private:
     const float kappa = m_Shape.kappa[g];
     for (int tile = first; tile < end; ++tile)
     {
-      const Tile c = m_Weighted.column[tile], r = m_Weighted.row[tile], z = m_Weighted.z[tile];
-      const Tile halfLength = m_Weighted.half[tile], magnification = 1 + kappa * z;
+      const Tile c = m_Chords.column[tile], r = m_Chords.row[tile], z = m_Chords.z[tile];
+      const Tile halfLength = m_Chords.half[tile], magnification = 1 + kappa * z;
       const Tile x = magnification * c, y = magnification * r, perX = kappa * c, perY = kappa * r;
       Tile       middle[3], half[3];
       Repeat<3>([&](int i) __attribute__((always_inline)) {
@@ -537,7 +451,7 @@ private:
         middle[i] = per(0) * x + per(1) * y + per(2) * z;
         half[i] = halfLength * (per(2) + per(0) * perX + per(1) * perY);
       });
-      const Tile weight = LoadVector<Tile>(m_Weighted.weight + tile * tileLanes);
+      const Tile weight = LoadVector<Tile>(m_Weights + tile * tileLanes);
       AddMoments<N>(middle, half, weight * (2 * halfLength), sums);
     }
   }
@@ -549,17 +463,17 @@ private:
     const Tile          zero{};
     for (int tile = first; tile < end; ++tile)
     {
-      const Tile weight = LoadVector<Tile>(m_Weighted.weight + tile * tileLanes);
-      const Tile c = m_Weighted.column[tile], r = m_Weighted.row[tile];
+      const Tile weight = LoadVector<Tile>(m_Weights + tile * tileLanes);
+      const Tile c = m_Chords.column[tile], r = m_Chords.row[tile];
       const auto at = [&](const Tile & z) __attribute__((always_inline))
       {
         const Tile magnification = 1 + kappa * z;
         return weight * (magnification * magnification) * ValueAt<N>(q, magnification * c, magnification * r, z);
       };
-      const Tile in = at(m_Weighted.z[tile] - m_Weighted.half[tile]);
-      const Tile out = at(m_Weighted.z[tile] + m_Weighted.half[tile]);
+      const Tile in = at(m_Chords.z[tile] - m_Chords.half[tile]);
+      const Tile out = at(m_Chords.z[tile] + m_Chords.half[tile]);
       Repeat<4>([&](int p) __attribute__((always_inline)) {
-        const Tile value = (m_Weighted.entry[tile] == p ? in : zero) + (m_Weighted.exit[tile] == p ? out : zero);
+        const Tile value = (m_Chords.entry[tile] == p ? in : zero) + (m_Chords.exit[tile] == p ? out : zero);
         sums[count + 3 * p] += value;
         sums[count + 3 * p + 1] += value * c;
         sums[count + 3 * p + 2] += value * r;
@@ -717,8 +631,9 @@ private:
 
   const Adjoint & m_Adjoint;
   std::size_t     m_Block{ 0 };
-  WeightedSpans   m_Weighted;
-  BlockSums<N>    m_Sums;
+  RayChords       m_Chords;
+  alignas(64) float m_Weights[SpanList::pixelCapacity];
+  BlockSums<N> m_Sums;
 };
 
 template <int N>

@@ -92,6 +92,19 @@ protected:
   {
     return { m_FirstColumn[g], m_EndColumn[g], m_FirstRow[g], m_EndRow[g] };
   }
+  /** Cells whose barycentric coordinates reach far over the cell's frame: how much rounding grows. */
+  BatchIndex
+  FindFarReaching() const
+  {
+    BatchIndex found{};
+    for (int i = 0; i < 4; ++i)
+    {
+      const Octet reach = Absolute(m_Frames.mu[0][i]) + m_Frames.inPlane[i] + Absolute(m_Frames.mu[3][i]);
+      found |= ~__builtin_convertvector(reach <= largestReach, BatchIndex);
+    }
+    return found;
+  }
+
   /** A cell as a member of a group. */
   void
   AddToGroup(int g, CellGroup & group) const
@@ -122,7 +135,8 @@ protected:
   BatchIndex           m_Fine;                                           ///< needs strips
 
 private:
-  void
+  /** Always inlined: GCC takes it for a function without effects and leaves calls out. */
+  inline __attribute__((always_inline)) void
   Fetch(std::size_t block) const
   {
     constexpr std::size_t vertices = 12 * lanes, coefficients = (CoefficientCount(N) + 1) * lanes, line = 64;

@@ -4,6 +4,7 @@
 #include "boneMeshDerivatives.h"
 
 #include "boneChordDerivative.h"
+#include "boneModelView.h"
 
 #include <algorithm>
 #include <atomic>
@@ -32,19 +33,15 @@ struct alignas(64) ModeBlock
 class DerivativeProjector
 {
 public:
-  DerivativeProjector(const std::vector<Vector3> &     points,
-                      const MeshCells &                cells,
-                      const XRayGeometry::View &       view,
-                      const MeshRadiographParameters & parameters,
-                      const RadiographModes &          modes)
-    : m_Points(points)
-    , m_Cells(cells)
-    , m_Parameters(parameters)
+  DerivativeProjector(const ProjectionModel & model, const XRayGeometry::View & view, const RadiographModes & modes)
+    : m_Points(model.Points())
+    , m_Cells(model.Cells())
+    , m_Parameters(model.Parameters())
     , m_Modes(modes)
-    , m_Projected(points, cells, view, parameters, std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 }))
+    , m_View(model, view)
     , m_VertexModes((modes.pose ? poseModes : 0) + static_cast<int>(modes.shape.size()))
     , m_VertexBlocks(projection::BlockCount(m_VertexModes))
-    , m_Density{ cells.coefficients.data() }
+    , m_Density{ m_Cells.coefficients.data() }
     , m_DensityBlocks(projection::BlockCount(1 + modes.density.size()))
   {
     for (const auto & mode : modes.density)
@@ -68,12 +65,20 @@ private:
   Velocity(int mode, std::size_t point) const;
   void
   SetDisplacements(const Execution & execution);
+  struct Band
+  {
+    PixelRange                             range;  ///< its rows, and columns where they have blocks
+    std::vector<std::vector<std::int32_t>> blocks; ///< of each of the model's degrees
+  };
+
   void
-  AddCells(const std::vector<IdType> & ids, const Execution & execution, const projection::Band & band);
+  SetBands();
+  void
+  AddBlocks(const Band & band, const Execution & execution, const projection::Band & target);
   void
   AddGeneral(std::size_t t, const projection::Band & band) const;
   void
-  DrawBand(std::size_t bandId, const Execution & execution, const std::vector<float *> & images);
+  DrawBand(const Band & band, const Execution & execution, const std::vector<float *> & images);
   void
   WriteRow(int row, std::pair<int, int> columns, const float * sums, const std::vector<float *> & images) const;
 
@@ -81,12 +86,15 @@ private:
   const MeshCells &                m_Cells;
   const MeshRadiographParameters & m_Parameters;
   const RadiographModes &          m_Modes;
-  ProjectedCells                   m_Projected;
+  ModelView                        m_View;
+  std::vector<Band>                m_Bands;
+  std::vector<std::int32_t>        m_General;     ///< cells
   int                              m_VertexModes; ///< pose and shape
   int                              m_VertexBlocks;
   std::vector<const double *>      m_Density; ///< that of the mesh, then the modes'
   int                              m_DensityBlocks;
-  std::atomic<std::size_t>         m_Done{ 0 };    ///< cells drawn, counted in each band
+  std::size_t                      m_Total{ 0 };   ///< blocks and general cells, counted in each band
+  std::atomic<std::size_t>         m_Done{ 0 };    ///< those drawn
   std::vector<ModeBlock>           m_Displacement; ///< of each point, in the rays' coordinates: 3 x vertex blocks
 };
 
@@ -107,7 +115,7 @@ DerivativeProjector::SetDisplacements(const Execution & execution)
       float * const to = m_Displacement[3 * m_VertexBlocks * p].of;
       for (int mode = 0; mode < m_VertexModes; ++mode)
       {
-        const Vector3 moved = m_Projected.Rays().ToPixel() * Velocity(mode, p);
+        const Vector3 moved = m_View.Rays().ToPixel() * Velocity(mode, p);
         for (int axis = 0; axis < 3; ++axis)
         {
           to[axis * m_VertexBlocks * projection::modeLanes + mode] = static_cast<float>(moved[axis]);
@@ -117,26 +125,83 @@ DerivativeProjector::SetDisplacements(const Execution & execution)
     loopChunk);
 }
 
+/** Bands of rows with about as many blocks each; a block is drawn in each band that it meets. */
+void
+DerivativeProjector::SetBands()
+{
+  const int                                                     rows = m_View.Rays().Rows();
+  const auto &                                                  sets = m_View.Model().ByDegree();
+  std::vector<std::size_t>                                      blocksOfRow(rows, 0);
+  std::vector<std::vector<std::pair<std::int32_t, PixelRange>>> seen(sets.size());
+  for (std::size_t set = 0; set < sets.size(); ++set)
+  {
+    for (std::size_t b = 0; b < sets[set].Count(); ++b)
+    {
+      PixelRange range;
+      double     row = 0;
+      const auto path = m_View.FindRange(sets[set], b, range, row);
+      if (path == ModelView::Path::Kernel)
+      {
+        ++blocksOfRow[static_cast<int>(std::clamp(row, 0.0, rows - 1.0))];
+        seen[set].emplace_back(static_cast<std::int32_t>(b), range);
+      }
+      else if (path == ModelView::Path::General)
+      {
+        m_View.CopyCells(sets[set], b, m_General);
+      }
+    }
+  }
+  const int              count = BandCount(rows);
+  const std::vector<int> bandOfRow = ShareRows(blocksOfRow, count);
+  m_Bands.resize(count);
+  for (int row = 0; row < rows; ++row)
+  {
+    m_Bands[bandOfRow[row]].range.Include({ m_View.Rays().Columns(), 0, row, row + 1 });
+  }
+  for (Band & band : m_Bands)
+  {
+    band.blocks.resize(sets.size());
+    if (!m_General.empty())
+    {
+      band.range.Include({ 0, m_View.Rays().Columns(), band.range.firstRow, band.range.endRow });
+    }
+  }
+  for (std::size_t set = 0; set < sets.size(); ++set)
+  {
+    for (const auto & [block, range] : seen[set])
+    {
+      for (int b = bandOfRow[range.firstRow]; b <= bandOfRow[range.endRow - 1]; ++b)
+      {
+        Band & band = m_Bands[b];
+        band.range.Include({ range.firstColumn, range.endColumn, band.range.firstRow, band.range.endRow });
+        band.blocks[set].push_back(block);
+        ++m_Total;
+      }
+    }
+  }
+  m_Total += m_General.size() * m_Bands.size();
+}
+
 void
 DerivativeProjector::Run(const Execution & execution, const std::vector<float *> & images)
 {
-  m_Projected.Prepare(execution.Silent());
+  SetBands();
   if (m_VertexModes > 0)
   {
     SetDisplacements(execution.Silent());
   }
-  execution.For(m_Projected.Bands(), [&](std::size_t band) { DrawBand(band, execution, images); });
+  execution.For(m_Bands.size(), [&](std::size_t band) { DrawBand(m_Bands[band], execution, images); });
 }
 
 void
 DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) const
 {
-  const ChordDerivative derivative(m_Projected.Density(), m_Parameters, t);
+  const ChordDerivative derivative(m_View.Cells().Density(), m_Parameters, t);
   const std::size_t     first = t * BernsteinCount(m_Cells.maximumDegree);
   const int             count = BernsteinCount(m_Cells.degree[t]);
-  m_Projected.ForEachChord(
+  m_View.Cells().ForEachChord(
     t, band.firstRow, band.endRow, [&](int row, int column, const CellChord & chord, const AffineBarycentric & mu) {
-      const ChordTerms     terms = derivative.At(chord, RatesAlong(mu, m_Projected.Rays(), column, row));
+      const ChordTerms     terms = derivative.At(chord, RatesAlong(mu, m_View.Rays(), column, row));
       const std::ptrdiff_t pixel = (row - band.firstRow) * band.stride + column - band.firstColumn;
       float *              sums = band.data + pixel * Blocks() * projection::modeLanes;
       for (int mode = 0; mode < m_VertexModes; ++mode)
@@ -149,7 +214,7 @@ DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) co
         sums[mode] += static_cast<float>(sum);
       }
       sums += m_VertexBlocks * projection::modeLanes;
-      sums[0] += static_cast<float>(m_Projected.Density().Integrate(t, chord.entry, chord.exit, chord.length));
+      sums[0] += static_cast<float>(m_View.Cells().Density().Integrate(t, chord.entry, chord.exit, chord.length));
       for (std::size_t m = 1; m < m_Density.size(); ++m)
       {
         const double sum = std::inner_product(terms.basis, terms.basis + count, m_Density[m] + first, 0.0);
@@ -159,58 +224,53 @@ DerivativeProjector::AddGeneral(std::size_t t, const projection::Band & band) co
 }
 
 void
-DerivativeProjector::AddCells(const std::vector<IdType> & ids,
-                              const Execution &           execution,
-                              const projection::Band &    band)
+DerivativeProjector::AddBlocks(const Band & band, const Execution & execution, const projection::Band & target)
 {
-  projection::Derivatives task{};
-  task.vertexBlocks = m_VertexBlocks;
-  task.densityBlocks = m_DensityBlocks;
-  task.densityModes = static_cast<int>(m_Density.size());
-  task.density = m_Density.data();
-  const std::size_t           total = m_Projected.CountInBands();
-  const std::ptrdiff_t        coefficients = BernsteinCount(m_Cells.maximumDegree);
-  const projection::Kernels & kernels = projection::SelectKernels(m_Parameters.portable);
-  m_Projected.ForEachGroup(
-    ids,
-    [&](projection::CellGroup & group, const IdType * members, std::size_t after) {
-      // A band of many modes takes long.
-      execution.Report(static_cast<double>(m_Done += group.count) / static_cast<double>(total));
-      for (int g = 0; g < group.count; ++g)
-      {
-        for (int i = 0; m_VertexBlocks > 0 && i < 4; ++i)
-        {
-          const std::size_t point = m_Cells.tetrahedra[members[g]][i];
-          task.displacement[g][i] = m_Displacement[3 * m_VertexBlocks * point].of;
-        }
-        task.coefficient[g] = static_cast<std::ptrdiff_t>(members[g]) * coefficients;
-      }
-      task.nextCount = static_cast<int>(std::min<std::size_t>(after, projection::groupSize));
-      for (int g = 0; g < task.nextCount; ++g)
-      {
-        task.next[g] = static_cast<std::ptrdiff_t>(members[group.count + g]) * coefficients;
-      }
-      kernels.derive(group, task, band);
-    },
-    [&](std::size_t t) {
-      AddGeneral(t, band);
-      execution.Report(static_cast<double>(++m_Done) / static_cast<double>(total));
-    });
+  const projection::Kernels &   kernels = projection::SelectKernels(m_Parameters.portable);
+  const projection::Derivatives task{ m_VertexBlocks,
+                                      m_Displacement.empty() ? nullptr : m_Displacement.front().of,
+                                      m_Cells.tetrahedra.front().data(),
+                                      m_DensityBlocks,
+                                      static_cast<int>(m_Density.size()),
+                                      m_Density.data() };
+  const auto                    report = [&](std::size_t count) {
+    execution.Report(static_cast<double>(m_Done += count) / static_cast<double>(m_Total));
+  };
+  constexpr std::size_t atOnce = 64; // a band of many modes takes long
+  for (std::size_t set = 0; set < band.blocks.size(); ++set)
+  {
+    const std::vector<std::int32_t> & blocks = band.blocks[set];
+    for (std::size_t first = 0; first < blocks.size(); first += atOnce)
+    {
+      const auto                      start = blocks.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::vector<std::int32_t> some(start, start + std::min(atOnce, blocks.size() - first));
+      m_View.Run(m_View.Model().ByDegree()[set], some, [&](const projection::BlockRun & run) {
+        kernels.derive(run, task, target);
+      });
+      report(some.size());
+    }
+  }
+  for (std::int32_t t : m_General)
+  {
+    AddGeneral(t, target);
+    report(1);
+  }
 }
 
 void
-DerivativeProjector::DrawBand(std::size_t bandId, const Execution & execution, const std::vector<float *> & images)
+DerivativeProjector::DrawBand(const Band & band, const Execution & execution, const std::vector<float *> & images)
 {
-  const int                 firstRow = m_Projected.FirstRow(bandId), endRow = m_Projected.EndRow(bandId);
-  const int                 columns = m_Projected.Rays().Columns();
-  const std::vector<IdType> ids = m_Projected.CellsOfBand(bandId);
-  const std::pair<int, int> range = m_Projected.ColumnsOf(ids);
-  const std::ptrdiff_t      stride = range.second - range.first;
-  std::vector<ModeBlock>    sums(stride * (endRow - firstRow) * Blocks() + 1, ModeBlock{}); // never empty
-  AddCells(ids, execution, projection::Band{ sums.data()->of, stride, firstRow, endRow, columns, range.first });
-  for (int row = firstRow; row < endRow; ++row)
+  const PixelRange &        range = band.range;
+  const std::pair<int, int> columns{ std::min(range.firstColumn, range.endColumn), range.endColumn };
+  const std::ptrdiff_t      stride = columns.second - columns.first;
+  const int                 rows = std::max(0, range.endRow - range.firstRow);
+  std::vector<ModeBlock>    sums(stride * rows * Blocks() + 1, ModeBlock{}); // never empty
+  AddBlocks(band,
+            execution,
+            projection::Band{ sums.data()->of, stride, range.firstRow, range.endRow, range.endColumn, columns.first });
+  for (int row = 0; row < rows; ++row)
   {
-    WriteRow(row, range, sums.data()->of + (row - firstRow) * stride * Blocks() * projection::modeLanes, images);
+    WriteRow(range.firstRow + row, columns, sums.data()->of + row * stride * Blocks() * projection::modeLanes, images);
   }
 }
 
@@ -221,7 +281,7 @@ DerivativeProjector::WriteRow(int                          row,
                               const float *                sums,
                               const std::vector<float *> & images) const
 {
-  const RayFrame &     rays = m_Projected.Rays();
+  const RayFrame &     rays = m_View.Rays();
   const int            count = columns.second - columns.first;
   const std::ptrdiff_t each = Blocks() * projection::modeLanes;
   const int            density = m_VertexBlocks * projection::modeLanes;
@@ -260,6 +320,16 @@ DerivativeProjector::WriteRow(int                          row,
 } // namespace
 
 void
+ProjectMeshDerivatives(const ProjectionModel &      model,
+                       const XRayGeometry::View &   view,
+                       const RadiographModes &      modes,
+                       const Execution &            execution,
+                       const std::vector<float *> & images)
+{
+  DerivativeProjector(model, view, modes).Run(execution, images);
+}
+
+void
 ProjectMeshDerivatives(const std::vector<Vector3> &     points,
                        const MeshCells &                cells,
                        const XRayGeometry::View &       view,
@@ -268,7 +338,9 @@ ProjectMeshDerivatives(const std::vector<Vector3> &     points,
                        const Execution &                execution,
                        const std::vector<float *> &     images)
 {
-  DerivativeProjector(points, cells, view, parameters, modes).Run(execution, images);
+  // The blocks of a model that is not kept are filled again in each band that they meet.
+  ProjectMeshDerivatives(
+    ProjectionModel(points, cells, parameters, execution.Silent()), view, modes, execution, images);
 }
 
 } // namespace bone

@@ -76,13 +76,6 @@ FindObstacle(const std::vector<Vector3> &     points,
 
 namespace
 {
-/** As many that their rows stay in the cache and the threads share them well. */
-int
-BandCount(const XRayGeometry::View & view)
-{
-  return std::max({ 1, std::min(8, view.size[1] / 8), view.size[1] / 64 });
-}
-
 /** The radiograph of a model in one view: its blocks by bands of rows, in the order of their centres, each drawn whole
  * into a picture of the rows its band's blocks cover; these overlap and are added up in order. */
 class ModelProjection
@@ -91,7 +84,7 @@ public:
   ModelProjection(const ProjectionModel & model, const XRayGeometry::View & view)
     : m_View(model, view)
     , m_Rays(m_View.Rays())
-    , m_Bands(BandCount(view))
+    , m_Bands(BandCount(view.size[1]))
   {
     Distribute();
   }
@@ -119,8 +112,6 @@ private:
 
   void
   Distribute();
-  std::vector<int>
-  ShareRows(const std::vector<std::size_t> & blocksOfRow) const;
   void
   DrawBand(Band & band, const projection::Kernels & kernels) const;
   void
@@ -132,28 +123,6 @@ private:
   std::vector<std::int32_t> m_General; ///< cells
   std::vector<float>        m_GeneralSums;
 };
-
-/** Band of each row, so that bands take about as long. */
-std::vector<int>
-ModelProjection::ShareRows(const std::vector<std::size_t> & blocksOfRow) const
-{
-  std::size_t all = 0;
-  for (std::size_t count : blocksOfRow)
-  {
-    all += count;
-  }
-  // Rows take time, too.
-  const double     perRow = 1e-3 + static_cast<double>(all) / (8.0 * blocksOfRow.size());
-  const double     share = (static_cast<double>(all) + perRow * blocksOfRow.size()) / m_Bands.size();
-  std::vector<int> bandOfRow(blocksOfRow.size());
-  double           before = 0;
-  for (std::size_t row = 0; row < blocksOfRow.size(); ++row)
-  {
-    bandOfRow[row] = std::min(static_cast<int>(before / share), static_cast<int>(m_Bands.size()) - 1);
-    before += static_cast<double>(blocksOfRow[row]) + perRow;
-  }
-  return bandOfRow;
-}
 
 void
 ModelProjection::Distribute()
@@ -183,10 +152,7 @@ ModelProjection::Distribute()
       }
       else if (path == ModelView::Path::General)
       {
-        const auto first = blocks.cells.begin() + static_cast<std::ptrdiff_t>(b * ProjectionModel::Blocks::size);
-        std::copy_if(first, first + ProjectionModel::Blocks::size, std::back_inserter(m_General), [](std::int32_t t) {
-          return t >= 0;
-        });
+        m_View.CopyCells(blocks, b, m_General);
       }
     }
   }
@@ -194,7 +160,7 @@ ModelProjection::Distribute()
   {
     band.blocks.resize(sets.size());
   }
-  const std::vector<int> bandOfRow = ShareRows(blocksOfRow);
+  const std::vector<int> bandOfRow = ShareRows(blocksOfRow, static_cast<int>(m_Bands.size()));
   for (const Place & place : places)
   {
     Band & band = m_Bands[bandOfRow[place.row]];

@@ -4,13 +4,41 @@
 #include "boneModelView.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace bone
 {
+int
+BandCount(int rows)
+{
+  return std::max({ 1, std::min(8, rows / 8), rows / 64 });
+}
+
+std::vector<int>
+ShareRows(const std::vector<std::size_t> & blocksOfRow, int bands)
+{
+  std::size_t all = 0;
+  for (std::size_t count : blocksOfRow)
+  {
+    all += count;
+  }
+  // Rows take time, too.
+  const double     perRow = 1e-3 + static_cast<double>(all) / (8.0 * blocksOfRow.size());
+  const double     share = (static_cast<double>(all) + perRow * blocksOfRow.size()) / bands;
+  std::vector<int> bandOfRow(blocksOfRow.size());
+  double           before = 0;
+  for (std::size_t row = 0; row < blocksOfRow.size(); ++row)
+  {
+    bandOfRow[row] = std::min(static_cast<int>(before / share), bands - 1);
+    before += static_cast<double>(blocksOfRow[row]) + perRow;
+  }
+  return bandOfRow;
+}
+
 ModelView::ModelView(const ProjectionModel & model, const XRayGeometry::View & view)
   : m_Model(model)
-  , m_Cells(model.Points(), model.Cells(), view, model.Parameters(), 1)
+  , m_Cells(model.Points(), model.Cells(), view, model.Parameters())
 {}
 
 ModelView::Path
@@ -112,5 +140,13 @@ ModelView::Run(const ProjectionModel::Blocks &                               blo
     }
     kernel(run);
   }
+}
+
+void
+ModelView::CopyCells(const ProjectionModel::Blocks & blocks, std::size_t block, std::vector<std::int32_t> & cells) const
+{
+  const auto first = blocks.cells.begin() + static_cast<std::ptrdiff_t>(block * ProjectionModel::Blocks::size);
+  std::copy_if(
+    first, first + ProjectionModel::Blocks::size, std::back_inserter(cells), [](std::int32_t t) { return t >= 0; });
 }
 } // namespace bone

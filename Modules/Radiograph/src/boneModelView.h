@@ -35,6 +35,14 @@ struct PixelRange
   }
 };
 
+/** Bands of so many rows: as many that their rows stay in the cache and the threads share them well. */
+int
+BandCount(int rows);
+
+/** The band of each row, ascending, so that bands take about as long. */
+std::vector<int>
+ShareRows(const std::vector<std::size_t> & blocksOfRow, int bands);
+
 /** \class ModelView
  * \brief The blocks of a model as a view sees them. */
 class ModelView
@@ -59,7 +67,7 @@ public:
   {
     return m_Cells.Rays();
   }
-  /** For cells of the general path; not prepared. */
+  /** For cells of the general path. */
   const ProjectedCells &
   Cells() const
   {
@@ -69,6 +77,10 @@ public:
   /** Where a block is seen; row: of its centre. */
   Path
   FindRange(const ProjectionModel::Blocks & blocks, std::size_t block, PixelRange & range, double & row) const;
+
+  /** Appends the block's cells. */
+  void
+  CopyCells(const ProjectionModel::Blocks & blocks, std::size_t block, std::vector<std::int32_t> & cells) const;
 
   /** Calls kernel(run) for the chosen blocks, in order: once, or, where the model does not keep them, for some at a
    * time that are filled for it. */

@@ -31,7 +31,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx2Kernels = { avx2::Expand, avx2::AddBlocks, avx2::DeriveCells, avx2::AdjoinBlocks };
+const Kernels avx2Kernels = { avx2::Expand, avx2::AddBlocks, avx2::DeriveBlocks, avx2::AdjoinBlocks };
 } // namespace projection
 } // namespace bone
 

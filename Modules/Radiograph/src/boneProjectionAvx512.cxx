@@ -29,7 +29,7 @@ namespace bone
 {
 namespace projection
 {
-const Kernels avx512Kernels = { avx512::Expand, avx512::AddBlocks, avx512::DeriveCells, avx512::AdjoinBlocks };
+const Kernels avx512Kernels = { avx512::Expand, avx512::AddBlocks, avx512::DeriveBlocks, avx512::AdjoinBlocks };
 } // namespace projection
 } // namespace bone
 

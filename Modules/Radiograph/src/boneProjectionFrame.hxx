@@ -174,6 +174,9 @@ struct Frame
   int    lefts, rights;
 };
 
+/** Of barycentric coordinates over a cell's frame, for single precision: how much rounding grows. */
+constexpr double largestReach = 64;
+
 inline double
 Absolute(double x)
 {

@@ -80,13 +80,11 @@ BlockCount(std::size_t modes)
 struct Derivatives
 {
   int                    vertexBlocks;
-  const float *          displacement[groupSize][4]; ///< of each cell and vertex: 3 x modes, see boneRayTerms.hxx
+  const float *          displacement; ///< of each point: 3 x modes in blocks, see boneRayTerms.hxx
+  const std::int32_t *   vertices;     ///< of each cell: 4 points
   int                    densityBlocks;
   int                    densityModes;
-  const double * const * density;                ///< coefficients of each mode
-  std::ptrdiff_t         coefficient[groupSize]; ///< where the coefficients of each tetrahedron begin
-  int                    nextCount;              ///< tetrahedra of the next group, whose coefficients are fetched
-  std::ptrdiff_t         next[groupSize];        ///< where their coefficients begin
+  const double * const * density; ///< coefficients of each mode, a cell's as far apart as BlockRun::density
 };
 
 /** The results of Kernels::adjoin: derivatives of the sum over the band's pixels of their numbers times the integrals.
@@ -104,8 +102,8 @@ struct Kernels
   void (*expand)(int degree, float * coefficients);
   /** Adds the tetrahedra's integrals to the band, in order. */
   void (*add)(const BlockRun & run, const Band & band);
-  /** The same for a group, with derivatives; fills the group up. */
-  void (*derive)(CellGroup & group, const Derivatives & derivatives, const Band & band);
+  /** The same with derivatives. */
+  void (*derive)(const BlockRun & run, const Derivatives & derivatives, const Band & band);
   /** Sets the derivatives of each cell of the run; the band is read. */
   void (*adjoin)(const BlockRun & run, const Adjoint & adjoint, const Band & band);
 };

@@ -21,7 +21,7 @@ namespace projection
 {
 const Kernels portableKernels = { portable::Expand,
                                   portable::AddBlocks,
-                                  portable::DeriveCells,
+                                  portable::DeriveBlocks,
                                   portable::AdjoinBlocks };
 
 const Kernels &

@@ -492,9 +492,6 @@ ForEachPixelList(const Frame & frame, const Band & band, PixelList<TReal> & list
   }
 }
 
-/** Of barycentric coordinates over a cell's frame, for single precision: how much rounding grows. */
-constexpr double largestReach = 64;
-
 /** Calls function(member, frame, exact) for the cells of the group that the band sees; `exact` where they need double
  * precision. */
 template <typename TFunction>

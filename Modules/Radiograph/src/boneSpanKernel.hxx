@@ -20,8 +20,8 @@ namespace BONE_PROJECTION_NAMESPACE
 /** Of higher degrees a polynomial reduced to the column, as in strips, costs less than one at each pixel. */
 constexpr int maximumSpanDegree = 3;
 
-/** Cells whose bounding box has more rows or columns than a byte counts do not fit, nor those with more pixels. An image
- * takes less time with strips from a smaller box on. */
+/** Cells whose bounding box has more rows or columns than a byte counts do not fit, nor those with more pixels. An
+ * image takes less time with strips from a smaller box on. */
 constexpr int maximumSpanBox = 1024;
 constexpr int imageSpanBox = 384;
 constexpr int maximumSpanSide = 256;

@@ -258,6 +258,44 @@ TEST(MeshDerivatives, EqualCentralDifferencesWithTheSourceInsideAndTheDetectorTh
   ExpectCentralDifferences(Staircase(3, true), view);
 }
 
+TEST(MeshDerivatives, EachOfManyModesHasItsOwnImage)
+{
+  // More than two blocks of vectors of each kind: multiples of one mode.
+  for (int degree : { 0, 1, 3, 4 })
+  {
+    const auto      mesh = Staircase(degree, false);
+    const View      view = Look(false);
+    const auto      one = RandomModes(mesh, 1);
+    const int       count = 35;
+    RadiographModes modes = one;
+    for (int m = 1; m < count; ++m)
+    {
+      modes.shape.push_back(one.shape[0]);
+      modes.density.push_back(one.density[0]);
+      std::for_each(modes.shape[m].begin(), modes.shape[m].end(), [&](Vector3 & v) { v *= m + 1; });
+      std::for_each(modes.density[m].begin(), modes.density[m].end(), [&](double & c) { c *= m + 1; });
+    }
+    const auto        images = Derive(mesh, view, modes, {}), single = Derive(mesh, view, one, {});
+    const std::size_t pixels = images.image.size();
+    EXPECT_EQ(images.image, single.image);
+    for (int m = 0; m < count; ++m)
+    {
+      for (std::size_t kind = 0; kind < 2; ++kind)
+      {
+        const float * const first = &single.derivatives[(6 + kind) * pixels];
+        const float * const of = &images.derivatives[(6 + kind * count + m) * pixels];
+        const float         largest = std::abs(
+          *std::max_element(first, first + pixels, [](float a, float b) { return std::abs(a) < std::abs(b); }));
+        EXPECT_GT(largest, 0);
+        for (std::size_t i = 0; i < pixels; ++i)
+        {
+          ASSERT_NEAR(of[i], (m + 1) * first[i], 1e-5 * (m + 1) * largest) << degree << ' ' << m << ' ' << kind;
+        }
+      }
+    }
+  }
+}
+
 TEST(MeshDerivatives, WithoutModesThereIsTheImage)
 {
   const auto mesh = Staircase(3, true);

@@ -116,9 +116,10 @@ Derivatives(benchmark::State & state)
   {
     pointers.push_back(&images[i]);
   }
+  const ProjectionModel model(mesh.points, mesh, {}, execution);
   for (auto _ : state)
   {
-    ProjectMeshDerivatives(mesh.points, mesh, view, {}, modes, execution, pointers);
+    ProjectMeshDerivatives(model, view, modes, execution, pointers);
   }
 }
 

@@ -18,16 +18,13 @@ using MetricMaker = std::function<std::unique_ptr<RadiographMetric>(const Radiog
 /** \class RigidCost
  * \brief How badly a density model in a pose agrees with X-rays: the mean of a metric over the views.
  *
- * The model stays and the views move, so that what depends on the model alone is computed once. Thread-safe. The mesh
- * and the projection model must outlive this. */
+ * The model stays and the views move, so that what depends on the model alone is computed once. Thread-safe. The
+ * projection model must outlive this. */
 class RigidCost
 {
 public:
-  /** `model` is of `mesh`. Throws what the metrics throw, with the number of the view. */
-  RigidCost(const MeshArrays &                  mesh,
-            const ProjectionModel &             model,
-            const std::vector<RadiographView> & views,
-            const MetricMaker &                 makeMetric);
+  /** Throws what the metrics throw, with the number of the view. */
+  RigidCost(const ProjectionModel & model, const std::vector<RadiographView> & views, const MetricMaker & makeMetric);
 
   std::size_t
   GetNumberOfViews() const
@@ -47,7 +44,6 @@ public:
                       const std::vector<std::vector<Vector3>> & shape = {}) const;
 
 private:
-  const MeshArrays &                             m_Mesh;
   const ProjectionModel &                        m_Model;
   std::vector<XRayGeometry::View>                m_Views;
   std::vector<std::unique_ptr<RadiographMetric>> m_Metrics;

@@ -10,12 +10,10 @@
 
 namespace bone
 {
-RigidCost::RigidCost(const MeshArrays &                  mesh,
-                     const ProjectionModel &             model,
+RigidCost::RigidCost(const ProjectionModel &             model,
                      const std::vector<RadiographView> & views,
                      const MetricMaker &                 makeMetric)
-  : m_Mesh(mesh)
-  , m_Model(model)
+  : m_Model(model)
 {
   for (const RadiographView & view : views)
   {
@@ -82,7 +80,7 @@ RigidCost::EvaluateDerivatives(const RigidPose &                         pose,
     {
       pointers[v].push_back(&images[v][i * pixels]);
     }
-    ProjectMeshDerivatives(m_Mesh.points, m_Mesh, view, m_Model.Parameters(), modes, execution, pointers[v]);
+    ProjectMeshDerivatives(m_Model, view, modes, execution, pointers[v]);
   }
   execution.Silent().For(m_Views.size(),
                          [&](std::size_t v) { values[v] = m_Metrics[v]->EvaluateDerivatives(pointers[v]); });

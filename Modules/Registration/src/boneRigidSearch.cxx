@@ -137,34 +137,28 @@ Judge(const RigidCost &         cost,
   }
 }
 
-/** A level made ready for radiographs. */
-struct ProjectedLevel
+/** A level made ready for radiographs; it must outlive the model. */
+std::unique_ptr<const ProjectionModel>
+MakeModel(const MeshArrays & level, const Execution & execution)
 {
-  const MeshArrays & mesh;
-  ProjectionModel    model;
-
-  ProjectedLevel(const MeshArrays & arrays, const Execution & execution)
-    : mesh(arrays)
-    , model(arrays.points, arrays, MeshRadiographParameters{}, execution)
-  {}
-};
+  return std::make_unique<const ProjectionModel>(level.points, level, MeshRadiographParameters{}, execution.Silent());
+}
 
 /** PatchGradientCorrelation of the views, reduced to so many pixels. */
 std::unique_ptr<const RigidCost>
 MakeCost(const RigidRadiographParameters &   parameters,
          const std::vector<RadiographView> & views,
          int                                 pixels,
-         const ProjectedLevel &              level)
+         const ProjectionModel &             model)
 {
   std::vector<RadiographView> reduced;
   for (const RadiographView & view : views)
   {
     reduced.push_back(ReduceView(view, ReductionTo(view.view, pixels)));
   }
-  return std::make_unique<const RigidCost>(
-    level.mesh, level.model, reduced, [&parameters](const RadiographView & view) {
-      return std::make_unique<PatchGradientCorrelation>(view, parameters.patch, parameters.sigma);
-    });
+  return std::make_unique<const RigidCost>(model, reduced, [&parameters](const RadiographView & view) {
+    return std::make_unique<PatchGradientCorrelation>(view, parameters.patch, parameters.sigma);
+  });
 }
 
 class RigidSearch
@@ -191,7 +185,7 @@ public:
     m_IsSearched = m_Box.minCoeff() > 0.0 || m_Box.maxCoeff() > 0.0;
     for (const MeshArrays & level : levels)
     {
-      m_Levels.push_back(std::make_unique<ProjectedLevel>(level, Execution().Silent()));
+      m_Levels.push_back(MakeModel(level, Execution()));
     }
     for (const Resolution & resolution : m_Resolutions)
     {
@@ -293,11 +287,11 @@ private:
   RigidPose
   Search(int search, const Execution & execution) const
   {
-    constexpr int        generations = 100;
-    constexpr double     narrow = 0.03; // of the box
-    const ProjectedLevel level(m_Means, execution.Silent());
-    const auto           cost = MakeCost(m_P, m_Views, m_Resolutions.front().pixels, level);
-    const auto           seed = static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search);
+    constexpr int    generations = 100;
+    constexpr double narrow = 0.03; // of the box
+    const auto       model = MakeModel(m_Means, execution);
+    const auto       cost = MakeCost(m_P, m_Views, m_Resolutions.front().pixels, *model);
+    const auto       seed = static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search);
     // From the start, and, where that led astray, from elsewhere and with more poses.
     const Vector6     mean = search == 0 ? Vector6(Vector6::Zero()) : Vector6(0.4 * SampleCoefficients(6, seed));
     EvolutionStrategy strategy(mean.cwiseMin(1.0).cwiseMax(-1.0), 0.4, m_P.population * (2 + search) / 2, seed);
@@ -373,7 +367,7 @@ private:
   Eigen::Matrix3d                                        m_PrincipalTurns;
   Vector6                                                m_Box;
   bool                                                   m_IsSearched{ false };
-  std::vector<std::unique_ptr<const ProjectedLevel>>     m_Levels;
+  std::vector<std::unique_ptr<const ProjectionModel>>    m_Levels;
   std::vector<std::unique_ptr<const RigidCost>>          m_Costs;
 };
 } // namespace
@@ -385,9 +379,9 @@ JudgePose(const MeshArrays &                  model,
           const Execution &                   execution,
           RigidRegistrationResult &           result)
 {
-  const ProjectedLevel level(model, execution.Silent());
-  const auto           cost = MakeCost(parameters, views, parameters.pixels, level);
-  const Vector3 &      centre = result.pose.centre;
+  const auto      ready = MakeModel(model, execution);
+  const auto      cost = MakeCost(parameters, views, parameters.pixels, *ready);
+  const Vector3 & centre = result.pose.centre;
   Judge(*cost, RadiusOf(model.points, centre), PrincipalTurns(model.points, centre), execution, result);
 }
 

@@ -29,7 +29,7 @@ struct Scene
     , model(mesh.points, mesh, {}, Execution())
   {
     cost = std::make_unique<const RigidCost>(
-      mesh, model, views.empty() ? TwoXRays(mesh, truth) : views, [](const RadiographView & view) {
+      model, views.empty() ? TwoXRays(mesh, truth) : views, [](const RadiographView & view) {
         return std::make_unique<PatchGradientCorrelation>(view, 16, 1.5);
       });
   }

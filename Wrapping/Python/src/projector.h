@@ -12,6 +12,7 @@
 #include "boneRigidPose.h"
 
 #include <memory>
+#include <vector>
 
 namespace bone::python
 {
@@ -47,9 +48,9 @@ public:
   /** Throws UsageFailure where no radiograph can be made of the mesh. */
   Projector(const Mesh & mesh, const DRRParameters & regions, const RadiographParameters & conversion, bool keep);
 
-  /** Rows x columns line integrals. */
+  /** Poses x rows x columns line integrals. */
   py::array_t<float>
-  Project(const XRayGeometry & geometry, const PoseParameters & pose) const;
+  Project(const XRayGeometry & geometry, const std::vector<PoseParameters> & poses) const;
   /** The radiograph, and its derivatives: modes x rows x columns. */
   py::tuple
   Derive(const XRayGeometry & geometry, const PoseParameters & pose, RadiographModes modes) const;

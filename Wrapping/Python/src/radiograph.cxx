@@ -62,14 +62,23 @@ ShapeOf(const XRayGeometry::View & view)
 } // namespace
 
 py::array_t<float>
-Projector::Project(const XRayGeometry & geometry, const PoseParameters & pose) const
+Projector::Project(const XRayGeometry & geometry, const std::vector<PoseParameters> & poses) const
 {
-  const auto                   view = pose.GetPose().ToModelSpace(geometry.GetView());
-  py::array_t<float>           image(ShapeOf(view));
-  float * const                pixels = image.mutable_data();
+  std::vector<XRayGeometry::View> views;
+  for (const PoseParameters & pose : poses)
+  {
+    views.push_back(pose.GetPose().ToModelSpace(geometry.GetView()));
+  }
+  const auto           shape = ShapeOf(geometry.GetView());
+  py::array_t<float>   all({ static_cast<py::ssize_t>(poses.size()), shape[0], shape[1] });
+  std::vector<float *> images;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+  {
+    images.push_back(all.mutable_data() + i * static_cast<std::size_t>(shape[0] * shape[1]));
+  }
   const py::gil_scoped_release release;
-  ProjectMesh(*m_Model, { view }, Execution(), { pixels });
-  return image;
+  ProjectMesh(*m_Model, views, Execution(), images);
+  return all;
 }
 
 py::tuple
@@ -88,7 +97,7 @@ Projector::Derive(const XRayGeometry & geometry, const PoseParameters & pose, Ra
   }
   {
     const py::gil_scoped_release release;
-    ProjectMeshDerivatives(m_Arrays.points, m_Arrays, view, m_Parameters, modes, Execution(), images);
+    ProjectMeshDerivatives(*m_Model, view, modes, Execution(), images);
     if (modes.pose)
     {
       using Map = Eigen::Map<Eigen::Matrix<float, 6, Eigen::Dynamic, Eigen::RowMajor>>;
@@ -166,21 +175,56 @@ BuildProjector(const Mesh & mesh, bool keep, const py::kwargs & keywords)
   return std::make_shared<Projector>(mesh, regions, conversion, keep);
 }
 
+Array<double>
+ReadPoses(const py::object & poses)
+{
+  const auto array = Array<double>::ensure(poses);
+  PyErr_Clear();
+  return array;
+}
+
+PoseParameters
+MakePose(const Projector & projector, const double * numbers, const py::object & centre)
+{
+  return { Eigen::Map<const Eigen::Matrix<double, 6, 1>>(numbers),
+           centre.is_none() ? projector.GetCentre() : ToVector(centre, "pose_centre") };
+}
+
 PoseParameters
 ReadPose(const Projector & projector, const py::object & pose, const py::object & centre)
 {
-  Eigen::Matrix<double, 6, 1> numbers = Eigen::Matrix<double, 6, 1>::Zero();
-  if (!pose.is_none())
+  constexpr double still[6] = {};
+  if (pose.is_none())
   {
-    const auto array = Array<double>::ensure(pose);
-    if (!array || array.size() != 6)
-    {
-      PyErr_Clear();
-      throw UsageFailure("pose must be six numbers: translation (mm) and rotation vector (radians)");
-    }
-    numbers = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(array.data());
+    return MakePose(projector, still, centre);
   }
-  return { numbers, centre.is_none() ? projector.GetCentre() : ToVector(centre, "pose_centre") };
+  const auto array = ReadPoses(pose);
+  if (!array || array.size() != 6)
+  {
+    throw UsageFailure("pose must be six numbers: translation (mm) and rotation vector (radians)");
+  }
+  return MakePose(projector, array.data(), centre);
+}
+
+/** One radiograph, or those of the rows of n x 6 poses. */
+py::object
+ProjectPoses(const Projector & self, const XRayGeometry & geometry, const py::object & pose, const py::object & centre)
+{
+  const auto array = pose.is_none() ? Array<double>() : ReadPoses(pose);
+  if (!array || array.ndim() != 2)
+  {
+    return self.Project(geometry, { ReadPose(self, pose, centre) })[py::int_(0)];
+  }
+  if (array.shape(1) != 6)
+  {
+    throw UsageFailure("poses must be n x 6: translation (mm) and rotation vector (radians) of each");
+  }
+  std::vector<PoseParameters> poses;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i)
+  {
+    poses.push_back(MakePose(self, array.data(i, 0), centre));
+  }
+  return self.Project(geometry, poses);
 }
 
 py::tuple
@@ -222,7 +266,7 @@ ValueAndPullback(const SharedProjector & self,
   const PoseParameters parameters = ReadPose(*self, pose, centre);
   const auto           view = geometry.GetView();
   return py::make_tuple(
-    self->Project(geometry, parameters),
+    self->Project(geometry, { parameters })[py::int_(0)],
     py::cpp_function(
       [self, view, parameters](const Array<float> & image) { return self->Backproject(view, parameters, image); },
       py::arg("cotangent"),
@@ -243,15 +287,14 @@ BindProjector(py::module_ & m)
     "pose: six numbers, translation t (mm) and rotation vector r (radians) of the mesh before fixed views: "
     "x -> R(r) (x - pose_centre) + pose_centre + t; pose_centre is the mean of the points by default.")
     .def(py::init(&BuildProjector), py::arg("mesh"), py::arg("keep") = true)
-    .def(
-      "__call__",
-      [](const Projector & self, const XRayGeometry & geometry, const py::object & pose, const py::object & centre) {
-        return self.Project(geometry, ReadPose(self, pose, centre));
-      },
-      py::arg("geometry"),
-      py::arg("pose") = py::none(),
-      py::arg("pose_centre") = py::none(),
-      "The radiograph: rows x columns line integrals, float32.")
+    .def("__call__",
+         &ProjectPoses,
+         py::arg("geometry"),
+         py::arg("pose") = py::none(),
+         py::arg("pose_centre") = py::none(),
+         "The radiograph: rows x columns line integrals, float32. pose may be n x 6, for n poses that are drawn at "
+         "once on "
+         "all threads: n x rows x columns, the same images as one at a time.")
     .def(
       "derivatives",
       &DeriveModes,

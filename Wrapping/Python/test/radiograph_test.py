@@ -75,6 +75,20 @@ class Radiographs(unittest.TestCase):
         image = bonetk.Projector(moved)(self.view)
         np.testing.assert_allclose(projector(self.view, pose), image, atol=1e-4 * image.max())
 
+    def test_many_poses_at_once_are_those_of_each(self):
+        poses = np.random.default_rng(1).uniform(-0.2, 0.2, (40, 6))
+        projector = bonetk.Projector(self.mesh)
+        images = projector(self.view, poses)
+        self.assertEqual(images.shape, (40, self.view.size[1], self.view.size[0]))
+        for pose, image in zip(poses, images):
+            np.testing.assert_array_equal(image, projector(self.view, pose))
+        self.assertEqual(projector(self.view, poses[:1]).shape, (1, *images.shape[1:]))
+        self.assertEqual(projector(self.view, poses[:0]).shape, (0, *images.shape[1:]))
+        with self.assertRaisesRegex(bonetk.UsageError, "n x 6"):
+            projector(self.view, np.zeros((6, 5)))
+        with self.assertRaisesRegex(bonetk.UsageError, "six numbers"):
+            projector(self.view, "there")
+
 
 class Derivatives(unittest.TestCase):
     """Of a smooth number of radiographs without edges, as single pixels and edges have kinks."""
