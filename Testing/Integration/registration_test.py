@@ -185,8 +185,8 @@ class Register(TestCase):
         command = [*self.command[:self.command.index("views.json")], "off.json", "--pixels", 128, "--search", 0, 0]
         self.succeed(*command, "-o", "taken")
         self.succeed(*command, "--view-translation-deviation", 2, "-o", "r")
-        # Where the second view may be elsewhere, the first one alone tells its depth.
-        self.assertLess(self.error("r.json"), 2.0)
+        # Where the second view may be elsewhere, the first one alone tells its depth, to a millimetre or two.
+        self.assertLess(self.error("r.json"), 2.5)
         self.assertNotIn("viewCorrections", read_json("taken.json"))
         first, second = read_json("r.json")["viewCorrections"]
         self.assertTrue(numpy.allclose(first["transform"], numpy.eye(4)))
@@ -196,7 +196,7 @@ class Register(TestCase):
         # What was found serves as a geometry.
         self.succeed(*self.command[:self.command.index("views.json")], "r_geometry.json", "--pixels", 128, "--search", 0, 0,
                      "--initial", "r.tfm", "-o", "again")
-        self.assertLess(self.error("again.json"), 2.0)
+        self.assertLess(self.error("again.json"), 2.5)
 
     def test_a_bone_that_is_not_there_is_no_success(self):
         # Air with noise: nothing of the bone.
