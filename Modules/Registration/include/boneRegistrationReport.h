@@ -26,10 +26,10 @@ nlohmann::json
 ReportViewCorrections(const std::vector<ViewCorrection> & views);
 
 /** The same of a deformable registration, `covariance` and `standardDeviations` being the pose's alone; without
- * `leastDistinctness` and `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations), `pointDeviation` (`mean`
- * and `largest` standard deviation of a point's position, mm), `precision` (by which the cost counts against the prior)
- * and `posterior`: `volumeMm3`, `meanDensity` (HU) and `massHuMm3` of the whole bone, each with `mean` and
- * `standardDeviation`, and a list `regions` with the same of each `region`. */
+ * `leastDistinctness` and `searches`, and with `shape`, `smooth` and `density` (coefficients in standard deviations),
+ * `pointDeviation` (`mean` and `largest` standard deviation of a point's position, mm), `precision` (by which the cost
+ * counts against the prior) and `posterior`: `volumeMm3`, `meanDensity` (HU) and `massHuMm3` of the whole bone, each
+ * with `mean` and `standardDeviation`, and a list `regions` with the same of each `region`. */
 nlohmann::json
 ReportRegistration(const DeformableRegistrationResult & result);
 

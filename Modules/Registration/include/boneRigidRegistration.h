@@ -43,17 +43,18 @@ struct RigidRegistrationResult
    * minimum is flat: with two views, on four bones, true poses have 0.41 and more, wrong ones 0.42 and less, most
    * 0.28. One view does not always tell: wrong poses of a long bone have up to 1. */
   double distinctness{ 0.0 };
-  /** The same of the one among twelve motions, each way along and about the model's principal axes, that raises the cost
-   * least. A pose that edges of something else hold in place, such as those of a cropped CT, slides along them: with two
-   * views, on seven bones, wrong poses with a distinctness of 0.45 and more had at most 0.26 of it, true ones at least
-   * 0.31. A wrong one is Suspect by that, whatever its distinctness. One view has no hold on its depth anyway. */
+  /** The same of the one among twelve motions, each way along and about the model's principal axes, that raises the
+   * cost least. A pose that edges of something else hold in place, such as those of a cropped CT, slides along them:
+   * with two views, on seven bones, wrong poses with a distinctness of 0.45 and more had at most 0.26 of it, true ones
+   * at least 0.31. A wrong one is Suspect by that, whatever its distinctness. One view has no hold on its depth anyway.
+   */
   double leastDistinctness{ 0.0 };
   int    searches{ 0 };
   bool   beyondSearch{ false }; ///< the pose lies at the end of what was searched: `quality` is Suspect at best
 };
 
-/** \brief Sets cost, costs of the views, both distinctnesses and quality of the pose that `result` has (and of beyondSearch),
- * for a model whose radiographs are as in the last step of RegisterRigid. */
+/** \brief Sets cost, costs of the views, both distinctnesses and quality of the pose that `result` has (and of
+ * beyondSearch), for a model whose radiographs are as in the last step of RegisterRigid. */
 void
 JudgePose(const MeshArrays &                  model,
           const std::vector<RadiographView> & views,
