@@ -151,12 +151,17 @@ DerivativeProjector::SetBands()
       }
     }
   }
-  const int              count = BandCount(rows);
-  const std::vector<int> bandOfRow = ShareRows(blocksOfRow, count);
-  m_Bands.resize(count);
+  const std::vector<int> shares = ShareRows(blocksOfRow, BandCount(rows));
+  std::vector<int>       bandOfRow(rows); // shares without rows are no bands
+  m_Bands.clear();
   for (int row = 0; row < rows; ++row)
   {
-    m_Bands[bandOfRow[row]].range.Include({ m_View.Rays().Columns(), 0, row, row + 1 });
+    if (row == 0 || shares[row] != shares[row - 1])
+    {
+      m_Bands.emplace_back();
+    }
+    bandOfRow[row] = static_cast<int>(m_Bands.size()) - 1;
+    m_Bands.back().range.Include({ m_View.Rays().Columns(), 0, row, row + 1 });
   }
   for (Band & band : m_Bands)
   {
@@ -263,7 +268,7 @@ DerivativeProjector::DrawBand(const Band & band, const Execution & execution, co
   const PixelRange &        range = band.range;
   const std::pair<int, int> columns{ std::min(range.firstColumn, range.endColumn), range.endColumn };
   const std::ptrdiff_t      stride = columns.second - columns.first;
-  const int                 rows = std::max(0, range.endRow - range.firstRow);
+  const int                 rows = range.endRow - range.firstRow;
   std::vector<ModeBlock>    sums(stride * rows * Blocks() + 1, ModeBlock{}); // never empty
   AddBlocks(band,
             execution,
