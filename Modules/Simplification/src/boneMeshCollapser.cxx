@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace bone
 {
@@ -73,17 +74,20 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   const auto & p = m_Complex.Points();
   for (IdType t = 0; t < m_Complex.Size(); ++t)
   {
-    const Id4 & c = m_Complex.Cell(t);
-    RegionOf(m_Complex.Region(t)).volume += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    const Id4 &       c = m_Complex.Cell(t);
+    const std::size_t region = RegionOf(m_Complex.Region(t));
+    if (region == m_Regions.size())
+    {
+      m_Regions.push_back({ m_Complex.Region(t), 0.0, 0.0 });
+    }
+    m_Regions[region].volume += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
   }
   FillGrid();
-  m_VolumeChange.assign(m_Regions.size(), 0.0);
   for (IdType v = 0; v < static_cast<IdType>(p.size()); ++v)
   {
     if (!m_Complex.Star(v).empty() && m_Complex.Dimension(v) > 0)
     {
       m_State[v] = State::Queued;
-      m_Queue.push({ 0.0, v });
     }
   }
 }
@@ -105,20 +109,16 @@ MeshCollapser::FillGrid()
   }
 }
 
-MeshCollapser::Region &
-MeshCollapser::RegionOf(int label)
+std::size_t
+MeshCollapser::RegionOf(int label) const
 {
-  auto at = std::find_if(m_Regions.begin(), m_Regions.end(), [label](const Region & r) { return r.label == label; });
-  if (at == m_Regions.end())
-  {
-    m_Regions.push_back({ label, 0.0, 0.0 });
-    at = m_Regions.end() - 1;
-  }
-  return *at;
+  const auto at =
+    std::find_if(m_Regions.begin(), m_Regions.end(), [label](const Region & r) { return r.label == label; });
+  return static_cast<std::size_t>(at - m_Regions.begin());
 }
 
 MeshOperation
-MeshCollapser::CheckVolume(IdType v, double & cost)
+MeshCollapser::CheckVolume(IdType v, const std::vector<double> & volumes, double & cost) const
 {
   if (m_Complex.Dimension(v) == 3)
   {
@@ -127,7 +127,7 @@ MeshCollapser::CheckVolume(IdType v, double & cost)
   for (std::size_t r = 0; r < m_Regions.size(); ++r)
   {
     const Region & region = m_Regions[r];
-    const double   after = region.error + m_VolumeChange[r];
+    const double   after = region.error + volumes[r];
     // A change that brings a region back is always allowed.
     if (std::abs(after) > m_Parameters.maximumVolumeChange * region.volume && std::abs(after) > std::abs(region.error))
     {
@@ -139,16 +139,21 @@ MeshCollapser::CheckVolume(IdType v, double & cost)
 }
 
 MeshOperation
-MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limits, double & cost)
+MeshCollapser::Rate(IdType                v,
+                    IdType                w,
+                    double                densityCost,
+                    const Limits &        limits,
+                    std::vector<double> & volumes,
+                    double &              cost) const
 {
   const auto & p = m_Complex.Points();
   double       worst = -1.0, volume = 0.0, deficit = 0.0;
-  std::fill(m_VolumeChange.begin(), m_VolumeChange.end(), 0.0);
+  volumes.assign(m_Regions.size(), 0.0);
   for (IdType t : m_Complex.Star(v))
   {
     Id4          c = m_Complex.Cell(t);
     const double before = SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
-    double &     change = m_VolumeChange[&RegionOf(m_Complex.Region(t)) - m_Regions.data()];
+    double &     change = volumes[RegionOf(m_Complex.Region(t))];
     change -= before;
     if (m_Complex.Has(t, w))
     {
@@ -186,7 +191,7 @@ MeshCollapser::Rate(IdType v, IdType w, double densityCost, const Limits & limit
   const double length = (p[v] - p[w]).norm();
   cost = densityCost + m_Parameters.surfaceWeight * surface.integral + ShapeWeight * volume * shape * shape +
          LengthWeight * length * length * length + DeficitWeight * volume * deficit * deficit;
-  return CheckVolume(v, cost);
+  return CheckVolume(v, volumes, cost);
 }
 
 MeshCollapser::Limits
@@ -202,11 +207,12 @@ MeshCollapser::LimitsAround(IdType v) const
 }
 
 bool
-MeshCollapser::BoundaryCrosses(IdType v, IdType w)
+MeshCollapser::BoundaryCrosses(IdType v, IdType w) const
 {
-  std::vector<TriangleIds> changed;
-  m_Complex.SurfaceStar(v, m_Faces);
-  for (const auto & face : m_Faces)
+  std::vector<TetraComplex::SurfaceFace> faces;
+  std::vector<TriangleIds>               changed;
+  m_Complex.SurfaceStar(v, faces);
+  for (const auto & face : faces)
   {
     if (IsTested(m_Complex, face.surface) && face.a != w && face.b != w)
     {
@@ -219,7 +225,7 @@ MeshCollapser::BoundaryCrosses(IdType v, IdType w)
 }
 
 MeshOperation
-MeshCollapser::CheckExactly(IdType v, IdType w)
+MeshCollapser::CheckExactly(IdType v, IdType w) const
 {
   const MeshOperation topology = m_Complex.CanCollapse(v, w);
   if (topology != MeshOperation::Done)
@@ -251,17 +257,18 @@ MeshCollapser::CheckExactly(IdType v, IdType w)
 }
 
 MeshCollapser::Candidate
-MeshCollapser::FindBest(IdType v)
+MeshCollapser::FindBest(IdType v) const
 {
-  std::vector<IdType> targets;
+  std::vector<IdType>                    targets;
+  std::vector<TetraComplex::SurfaceFace> faces;
   switch (m_Complex.Dimension(v))
   {
     case 1:
       targets = m_Complex.Surfaces().curve[v];
       break;
     case 2:
-      m_Complex.SurfaceStar(v, m_Faces);
-      for (const auto & face : m_Faces)
+      m_Complex.SurfaceStar(v, faces);
+      for (const auto & face : faces)
       {
         targets.push_back(face.a);
       }
@@ -274,22 +281,23 @@ MeshCollapser::FindBest(IdType v)
     m_Parameters.densityWeight > 0 && !m_Densities.IsEmpty()
       ? m_Parameters.densityWeight * m_Densities.RemovalCost(m_Complex, v) / (m_Densities.Range() * m_Densities.Range())
       : 0.0;
+  Candidate                              best;
+  std::vector<double>                    volumes;
   std::vector<std::pair<double, IdType>> rated;
   for (IdType w : targets)
   {
     double              cost = 0.0;
-    const MeshOperation outcome = Rate(v, w, densityCost, limits, cost);
+    const MeshOperation outcome = Rate(v, w, densityCost, limits, volumes, cost);
     if (outcome == MeshOperation::Done)
     {
       rated.emplace_back(cost, w);
     }
     else
     {
-      ++m_Refused[static_cast<int>(outcome)];
+      ++best.refused[static_cast<int>(outcome)];
     }
   }
   std::sort(rated.begin(), rated.end());
-  Candidate best;
   for (const auto & candidate : rated)
   {
     const MeshOperation outcome = CheckExactly(v, candidate.second);
@@ -299,9 +307,24 @@ MeshCollapser::FindBest(IdType v)
       best.w = candidate.second;
       break;
     }
-    ++m_Refused[static_cast<int>(outcome)];
+    ++best.refused[static_cast<int>(outcome)];
   }
   return best;
+}
+
+/** What v would do as things are. */
+void
+MeshCollapser::SetBest(IdType v, const Candidate & best)
+{
+  m_Dirty[v] = 0;
+  m_Epoch[v] = m_Collapses;
+  m_State[v] = best.w < 0 ? State::Parked : State::Queued;
+  if (best.w >= 0)
+  {
+    m_Target[v] = best.w;
+    m_Cost[v] = best.cost;
+  }
+  std::transform(m_Refused.begin(), m_Refused.end(), best.refused.begin(), m_Refused.begin(), std::plus<std::size_t>());
 }
 
 bool
@@ -344,8 +367,9 @@ MeshCollapser::KeepsCellErrors(IdType v, IdType w)
 void
 MeshCollapser::UpdateGrid(IdType v, bool insert)
 {
-  m_Complex.SurfaceStar(v, m_Faces);
-  for (const auto & face : m_Faces)
+  std::vector<TetraComplex::SurfaceFace> faces;
+  m_Complex.SurfaceStar(v, faces);
+  for (const auto & face : faces)
   {
     if (IsTested(m_Complex, face.surface))
     {
@@ -358,11 +382,12 @@ MeshCollapser::UpdateGrid(IdType v, bool insert)
 void
 MeshCollapser::Commit(IdType v, IdType w)
 {
-  double unused = 0.0;
-  Rate(v, w, 0.0, { 1.0, 1.0 }, unused); // for the change of volumes
+  double              unused = 0.0;
+  std::vector<double> volumes;
+  Rate(v, w, 0.0, { 1.0, 1.0 }, volumes, unused);
   for (std::size_t r = 0; r < m_Regions.size(); ++r)
   {
-    m_Regions[r].error += m_VolumeChange[r];
+    m_Regions[r].error += volumes[r];
   }
   const bool onSurface = m_Complex.Dimension(v) < 3;
   if (onSurface)
@@ -415,25 +440,24 @@ MeshCollapser::Requeue()
 void
 MeshCollapser::NoteWhyParked(const Execution & execution)
 {
-  const auto before = m_Refused;
-  bool       density = false;
+  Counts refused{};
+  bool   density = false;
   for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
   {
     if (m_State[v] == State::Parked)
     {
       execution.ThrowIfAborted();
-      density = FindBest(v).w >= 0 || density; // what else is allowed
+      const Candidate best = FindBest(v);
+      density = best.w >= 0 || density; // what else is allowed
+      std::transform(refused.begin(), refused.end(), best.refused.begin(), refused.begin(), std::plus<std::size_t>());
     }
   }
-  const auto grown = [&](MeshOperation reason) {
-    return m_Refused[static_cast<int>(reason)] - before[static_cast<int>(reason)];
-  };
-  const auto distance = grown(MeshOperation::Distance), volume = grown(MeshOperation::Volume);
+  const auto distance = refused[static_cast<int>(MeshOperation::Distance)];
+  const auto volume = refused[static_cast<int>(MeshOperation::Volume)];
   m_StoppedBy = density                  ? MeshOperation::Density
                 : distance + volume == 0 ? MeshOperation::Done
                 : distance >= volume     ? MeshOperation::Distance
                                          : MeshOperation::Volume;
-  m_Refused = before;
 }
 
 void
@@ -460,6 +484,10 @@ MeshCollapser::Run(IdType target, const Execution & execution)
   const double start = m_Complex.AliveCells();
   const double span = std::max(1.0, start - target);
   std::size_t  collapses = 0;
+  if (!m_IsRated && m_Complex.AliveCells() > target)
+  {
+    RateAll(execution);
+  }
   while (m_Complex.AliveCells() > target)
   {
     execution.ThrowIfAborted();
@@ -479,16 +507,12 @@ MeshCollapser::Run(IdType target, const Execution & execution)
     const IdType v = entry.v;
     if (m_Dirty[v] || m_Epoch[v] != m_Collapses || CheckExactly(v, m_Target[v]) != MeshOperation::Done)
     {
-      m_Dirty[v] = 0;
-      m_Epoch[v] = m_Collapses;
       const Candidate best = FindBest(v);
+      SetBest(v, best);
       if (best.w < 0)
       {
-        m_State[v] = State::Parked;
         continue;
       }
-      m_Target[v] = best.w;
-      m_Cost[v] = best.cost;
       if (!m_Queue.empty() && best.cost > m_Queue.top().cost)
       {
         m_Queue.push({ best.cost, v });
@@ -514,30 +538,44 @@ MeshCollapser::Run(IdType target, const Execution & execution)
   return collapses;
 }
 
+/** Fills the queue anew. */
+void
+MeshCollapser::RateAll(const Execution & execution)
+{
+  constexpr std::size_t  chunk = 64;
+  std::vector<Candidate> found(m_State.size());
+  execution.Silent().For(
+    found.size(),
+    [&](std::size_t v) {
+      if (m_State[v] != State::Gone)
+      {
+        found[v] = FindBest(static_cast<IdType>(v));
+      }
+    },
+    chunk);
+  m_IsRated = true;
+  m_Queue = {};
+  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
+  {
+    if (m_State[v] != State::Gone)
+    {
+      m_Cost[v] = 0.0;
+      SetBest(v, found[v]);
+      if (found[v].w >= 0)
+      {
+        m_Queue.push({ found[v].cost, v });
+      }
+    }
+  }
+}
+
 void
 MeshCollapser::Refresh(IdType minimumCells, const Execution & execution)
 {
   Flip(FlipAngle, FlipCellCount::NotMore, minimumCells, execution);
   m_RefreshAt = static_cast<IdType>(RefreshShare * m_Complex.AliveCells());
   m_Stale = false;
-  m_Queue = {};
-  for (IdType v = 0; v < static_cast<IdType>(m_State.size()); ++v)
-  {
-    if (m_State[v] != State::Gone)
-    {
-      execution.ThrowIfAborted();
-      m_Dirty[v] = 0;
-      m_Epoch[v] = m_Collapses;
-      const Candidate best = FindBest(v);
-      m_State[v] = best.w < 0 ? State::Parked : State::Queued;
-      m_Target[v] = best.w;
-      m_Cost[v] = best.cost;
-      if (best.w >= 0)
-      {
-        m_Queue.push({ best.cost, v });
-      }
-    }
-  }
+  RateAll(execution);
 }
 
 std::size_t
@@ -635,7 +673,7 @@ MeshCollapser::MeasureVolumes()
     if (m_Complex.IsAlive(t))
     {
       const Id4 & c = m_Complex.Cell(t);
-      RegionOf(m_Complex.Region(t)).error += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+      m_Regions[RegionOf(m_Complex.Region(t))].error += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
     }
   }
 }

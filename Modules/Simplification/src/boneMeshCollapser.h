@@ -129,10 +129,12 @@ private:
       return cost != other.cost ? cost > other.cost : v > other.v;
     }
   };
+  using Counts = std::array<std::size_t, MeshOperationCount>;
   struct Candidate
   {
     double cost{ 0.0 };
     IdType w{ -1 };
+    Counts refused{}; ///< targets by \ref MeshOperation
   };
   struct Region
   {
@@ -154,17 +156,21 @@ private:
   };
 
   Candidate
-  FindBest(IdType v);
+  FindBest(IdType v) const;
+  void
+  SetBest(IdType v, const Candidate & best);
+  /** \param volumes  change of each region. */
   MeshOperation
-  Rate(IdType v, IdType w, double densityCost, const Limits & limits, double & cost);
+  Rate(IdType v, IdType w, double densityCost, const Limits & limits, std::vector<double> & volumes, double & cost)
+    const;
   Limits
   LimitsAround(IdType v) const;
   MeshOperation
-  CheckExactly(IdType v, IdType w);
+  CheckExactly(IdType v, IdType w) const;
   MeshOperation
-  CheckVolume(IdType v, double & cost);
+  CheckVolume(IdType v, const std::vector<double> & volumes, double & cost) const;
   bool
-  BoundaryCrosses(IdType v, IdType w);
+  BoundaryCrosses(IdType v, IdType w) const;
   void
   Commit(IdType v, IdType w);
   void
@@ -174,13 +180,15 @@ private:
   bool
   IsWithinCellError(const Id4 & cell, IdType near) const;
   void
+  RateAll(const Execution & execution);
+  void
   Refresh(IdType minimumCells, const Execution & execution);
   bool
   Requeue();
   void
   NoteWhyParked(const Execution & execution);
-  Region &
-  RegionOf(int label);
+  std::size_t
+  RegionOf(int label) const;
   void
   FillGrid();
   void
@@ -188,35 +196,34 @@ private:
   void
   RequeueAll();
 
-  TetraComplex                                m_Complex;
-  std::shared_ptr<const AngleImprovement>     m_Improvement; ///< none: angles are not improved
-  AngleFloors                                 m_Floors;
-  DensitySamples                              m_Densities;
-  SurfaceSamples                              m_SurfaceSamples;
-  TetraCollapseParameters                     m_Parameters;
-  double                                      m_FirstEdge; ///< of the finest boundary, mean, mm
-  SurfaceGrid                                 m_Grid;
-  std::vector<Region>                         m_Regions;
-  std::vector<double>                         m_VolumeChange; ///< of each region, by the candidate looked at
-  std::priority_queue<Entry>                  m_Queue;
-  std::vector<State>                          m_State;
-  std::vector<char>                           m_Dirty;
-  std::vector<IdType>                         m_Target;
-  std::vector<double>                         m_Cost;
-  std::vector<std::size_t>                    m_Epoch; ///< number of collapses when the cost was computed
-  std::size_t                                 m_Collapses{ 0 };
-  IdType                                      m_RefreshAt{ 0 }; ///< number of cells
-  bool                                        m_Stale{ false }; ///< parked points may be allowed by now
-  std::vector<char>                           m_Changed;
-  std::optional<SurfaceEnvelope>              m_Envelope;
-  double                                      m_MaximumDistance{ std::numeric_limits<double>::infinity() };
-  std::shared_ptr<const CellFits>             m_Fits;
-  double                                      m_MaximumCellError{ std::numeric_limits<double>::infinity() };
-  std::vector<IdType>                         m_RefusedTarget; ///< of each point, by the bound on cells; -1: none
-  std::vector<std::uint32_t>                  m_RefusedAt;     ///< by the complex' clock
-  MeshOperation                               m_StoppedBy{ MeshOperation::Done };
-  std::array<std::size_t, MeshOperationCount> m_Refused{};
-  std::vector<TetraComplex::SurfaceFace>      m_Faces;
+  TetraComplex                            m_Complex;
+  std::shared_ptr<const AngleImprovement> m_Improvement; ///< none: angles are not improved
+  AngleFloors                             m_Floors;
+  DensitySamples                          m_Densities;
+  SurfaceSamples                          m_SurfaceSamples;
+  TetraCollapseParameters                 m_Parameters;
+  double                                  m_FirstEdge; ///< of the finest boundary, mean, mm
+  SurfaceGrid                             m_Grid;
+  std::vector<Region>                     m_Regions;
+  std::priority_queue<Entry>              m_Queue;
+  std::vector<State>                      m_State;
+  std::vector<char>                       m_Dirty;
+  std::vector<IdType>                     m_Target;
+  std::vector<double>                     m_Cost;
+  std::vector<std::size_t>                m_Epoch; ///< number of collapses when the cost was computed
+  std::size_t                             m_Collapses{ 0 };
+  IdType                                  m_RefreshAt{ 0 };   ///< number of cells
+  bool                                    m_Stale{ false };   ///< parked points may be allowed by now
+  bool                                    m_IsRated{ false }; ///< all points have been, once
+  std::vector<char>                       m_Changed;
+  std::optional<SurfaceEnvelope>          m_Envelope;
+  double                                  m_MaximumDistance{ std::numeric_limits<double>::infinity() };
+  std::shared_ptr<const CellFits>         m_Fits;
+  double                                  m_MaximumCellError{ std::numeric_limits<double>::infinity() };
+  std::vector<IdType>                     m_RefusedTarget; ///< of each point, by the bound on cells; -1: none
+  std::vector<std::uint32_t>              m_RefusedAt;     ///< by the complex' clock
+  MeshOperation                           m_StoppedBy{ MeshOperation::Done };
+  Counts                                  m_Refused{};
 };
 } // namespace bone
 

@@ -242,7 +242,6 @@ private:
   IdType                           m_AliveCount{ 0 };
   std::uint32_t                    m_Clock{ 1 };
   std::vector<std::uint32_t>       m_Changed; ///< of points: the clock when a cell there last changed
-  mutable std::vector<char>        m_Mark;    ///< of points, for LinksMeetInEdgeLink; else 0
 };
 
 /** Mean length of the boundary's edges, mm; 1 where there are none. */

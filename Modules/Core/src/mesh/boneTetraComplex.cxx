@@ -393,13 +393,15 @@ bool
 TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
 {
   // Neighbours of v are marked with 1, those that w shares by the edge's link with 2. The star of w may be large.
-  m_Mark.resize(m_Points.size(), 0);
+  thread_local std::vector<char> marks; // 0 between calls
+  std::vector<char> &            mark = marks;
+  mark.resize(std::max(mark.size(), m_Points.size()), 0);
   for (IdType t : m_Star[v])
   {
-    const char mark = Has(t, w) ? 2 : 1;
+    const char kind = Has(t, w) ? 2 : 1;
     for (IdType p : m_Cells[t])
     {
-      m_Mark[p] = std::max(m_Mark[p], mark);
+      mark[p] = std::max(mark[p], kind);
     }
   }
   // An edge of v's link that is none of the edge's.
@@ -425,9 +427,9 @@ TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
     int    n = 0;
     for (IdType p : m_Cells[m_Star[w][k]])
     {
-      if (p != v && p != w && m_Mark[p] > 0)
+      if (p != v && p != w && mark[p] > 0)
       {
-        meet = meet && m_Mark[p] == 2;
+        meet = meet && mark[p] == 2;
         shared[n++] = p;
       }
     }
@@ -441,7 +443,7 @@ TetraComplex::LinksMeetInEdgeLink(IdType v, IdType w) const
   {
     for (IdType p : m_Cells[t])
     {
-      m_Mark[p] = 0;
+      mark[p] = 0;
     }
   }
   return meet;
