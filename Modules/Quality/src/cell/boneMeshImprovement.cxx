@@ -262,7 +262,7 @@ private:
     ContourFlipParameters flips;
     flips.leastGain = std::pow(m_Parameters.flipGain * m_Parameters.distanceBound, 2);
     flips.cosineFloor = std::cos(m_Parameters.surfaceAngle);
-    m_Report.contourFlips += FlipToContours(m_Complex, m_Mover, energy, flips);
+    m_Report.contourFlips += FlipToContours(m_Complex, m_Mover, energy, flips, m_Execution.Silent());
   }
 
   /** What no change within the bound has mended may go farther, and the worst cells farther still. */

@@ -4,6 +4,7 @@
 #ifndef boneContourFlips_h
 #define boneContourFlips_h
 
+#include "boneExecution.h"
 #include "bonePointMover.h"
 #include "boneSurfaceEnergy.h"
 
@@ -26,7 +27,8 @@ std::size_t
 FlipToContours(TetraComplex &                complex,
                PointMover &                  mover,
                SurfaceEnergy &               energy,
-               const ContourFlipParameters & parameters);
+               const ContourFlipParameters & parameters,
+               const Execution &             execution);
 } // namespace bone
 
 #endif
