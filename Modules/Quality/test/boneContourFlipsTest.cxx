@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 using namespace bone;
 
@@ -162,7 +163,15 @@ TEST(FlipToContours, WhatIsForeseenOnAllThreadsIsWhatOneEdgeAfterTheOtherFinds)
   parameters.leastGain = 0.0;
   for (const double twist : { -0.12, 0.05, 0.12 })
   {
-    TetraComplex complexes[2] = { TetraComplex(TwistedRod(twist)), TetraComplex(TwistedRod(twist)) };
+    MeshArrays                             mesh = TwistedRod(twist);
+    std::mt19937                           random(1);
+    std::uniform_real_distribution<double> shift(-0.4, 0.4);
+    for (Vector3 & x : mesh.points)
+    {
+      x += Vector3(shift(random), shift(random), 0.0);
+    }
+    ASSERT_TRUE(ValidateMesh(mesh).IsValid());
+    TetraComplex complexes[2] = { TetraComplex(mesh), TetraComplex(mesh) };
     std::size_t  flips[2];
     for (int k = 0; k < 2; ++k)
     {
