@@ -3,7 +3,7 @@
 
 Builds the models (or takes those built before: MODEL=folder of the hip bone's, PHANTOM=folder of the phantom's), fits every
 degree with boneDensityValidation, checks degrees 0 to 6 with check_mesh.py where CHECK names it, and writes
-Documentation/validation/density.md with density_phantom.png (needs gnuplot). Models lie in the folder WORK, where that is
+Documentation/validation/density.md with density_phantom.png (needs matplotlib). Models lie in the folder WORK, where that is
 named, and stay there. Environment: BONETK, BONETK_DATA,
 BONETK_VALIDATION (boneDensityValidation), BONETK_BENCHMARKS (boneDensityBenchmarks; without it there is no table of speed).
 
@@ -19,11 +19,15 @@ import subprocess
 import sys
 import tempfile
 
+import matplotlib
 import nibabel
 import numpy
 
-import smooth_spaces
-from report import made_by
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+import smooth_spaces  # noqa: E402
+from report import made_by  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUT = ROOT / "Documentation" / "validation"
@@ -322,20 +326,25 @@ error against the known noise-free CT in HU; below the noise means below {NOISE:
     text += table(("degree", "all", "below the noise", "cortical", "trabecular", "medullary", *variants), rows)
     text += f"\nLeast error: degree {best(default, lambda e: e['all']['mean'])}.\n"
     text += other_phantoms(bonetk, work)
-    data = work / "phantom.txt"
-    data.write_text("\n".join(f"{n} {e['all']['mean']} {storage(e) / (2 * e['meshVoxels'])}" for n, e in enumerate(default)))
-    script = f"""set terminal png size 900,360; set output '{OUT / 'density_phantom.png'}'; set multiplot layout 1,2
-set xlabel 'degree'; set ylabel 'mean absolute error (HU)'; set yrange [0:*]; set key off; set grid
-plot '{data}' using 1:2 with linespoints pt 7, {NOISE} dt 2
-set xlabel 'bytes of the model / bytes of the voxels inside'; set logscale x
-plot '{data}' using 3:2:1 with labels offset 1,0.5, '' using 3:2 with linespoints pt 7
-"""
-    try:
-        subprocess.run(["gnuplot"], input=script, text=True, check=True, capture_output=True)
-        text += "\n![degree and storage against error](density_phantom.png)\n"
-    except (OSError, subprocess.CalledProcessError):
-        pass
-    return text
+    draw_phantom(default)
+    return text + "\n![degree and storage against error](density_phantom.png)\n"
+
+
+def draw_phantom(fitted):
+    """Error by degree, and by what the model takes of the voxels' bytes."""
+    errors = [e["all"]["mean"] for e in fitted]
+    shares = [storage(e) / (2 * e["meshVoxels"]) for e in fitted]
+    figure, (by_degree, by_storage) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+    by_degree.plot(range(len(errors)), errors, "o-")
+    by_degree.axhline(NOISE, linestyle="--", color="grey")
+    by_degree.set(xticks=range(len(errors)), xlabel="degree", ylabel="mean absolute error (HU)", ylim=(0, None))
+    by_storage.plot(shares, errors, "o-")
+    for degree, place in enumerate(zip(shares, errors)):
+        by_storage.annotate(str(degree), place, xytext=(4, 4), textcoords="offset points")
+    by_storage.set(xlabel="bytes of the model / bytes of the voxels inside", xscale="log", ylim=(0, None))
+    for axes in (by_degree, by_storage):
+        axes.grid(True)
+    figure.savefig(OUT / "density_phantom.png", dpi=100)
 
 
 def other_phantoms(bonetk, work):
