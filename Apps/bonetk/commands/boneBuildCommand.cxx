@@ -14,6 +14,7 @@
 #include "boneBuildPage.h"
 #include "boneBuildPlan.h"
 #include "boneContourIO.h"
+#include "boneExecution.h"
 #include "boneGeometryIO.h"
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
@@ -169,9 +170,10 @@ WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline 
         spline.GetPointer(), in("spline_L" + std::to_string(level + 1) + ".vtu"), report.parameters.storage);
     }
   }
-  evaluation.slices.Write(in("slices.png"));
-  evaluation.cutPlane.Write(in("cut_plane.png"));
-  evaluation.radiographs.Write(in("radiographs.png"));
+  const std::pair<const Canvas *, const char *> pictures[] = { { &evaluation.slices, "slices.png" },
+                                                               { &evaluation.cutPlane, "cut_plane.png" },
+                                                               { &evaluation.radiographs, "radiographs.png" } };
+  Execution().For(std::size(pictures), [&](std::size_t k) { pictures[k].first->Write(in(pictures[k].second)); });
   WriteFileAtomically(in("report.txt"), ToText(report));
   report.outputs = FilesIn(staging.GetPath());
   WriteFileAtomically(in("report.json"), ToJson(report));
