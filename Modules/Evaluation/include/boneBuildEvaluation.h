@@ -22,11 +22,11 @@ struct Evidence
 struct Evaluation
 {
   std::vector<LevelReport> levels;
-  std::vector<double>      degreeErrors; ///< of the finest level, see DegreeErrors
-  Window                   window;       ///< of the CT in pictures
-  Canvas                   slices;       ///< of the CT with contours
-  Canvas                   cutPlane;     ///< the CT and the levels in the plane of the bone's largest extent
-  Canvas                   radiographs;  ///< of the CT and the levels, in the pipeline's view and from the side
+  LabelImage::ConstPointer mask;        ///< the evidence's, or what stands for it
+  Window                   window;      ///< of the CT in pictures
+  Canvas                   slices;      ///< of the CT with contours
+  Canvas                   cutPlane;    ///< the CT and the levels in the plane of the bone's largest extent
+  Canvas                   radiographs; ///< of the CT and the levels, in the pipeline's view and from the side
 };
 
 /** Compares each level of an up-to-date pipeline with the CT, by volume, surface, density and radiograph. The

@@ -53,10 +53,10 @@ private:
 DensityComparison
 CompareWithImage(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask);
 
-/** Mean absolute density error, in percent of the range, of the model cut to degrees 0, 1, ... up to the largest of its
+/** Mean absolute density error, in percent of the range, of the model cut to degrees 0, 1, ... below the largest of its
  * cells: of the nearest polynomial of that degree in each tetrahedron. */
 std::vector<double>
-DegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask);
+LowerDegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask);
 
 /** 1st and 99th percentile of the image in the mask. */
 std::array<double, 2>

@@ -192,7 +192,7 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   const std::string unit = DensityUnitName(finest.quantity);
   const Window      window{ RoundInRange(percentiles[0] - 0.3 * range, range),
                        RoundInRange(percentiles[1] + 0.05 * range, range) };
-  evaluation.degreeErrors = DegreeErrors(finest, evidence.ct, mask);
+  evaluation.mask = mask;
   evaluation.window = window;
   evaluation.slices = DrawSlices(evidence.ct, pipeline.GetContours(), window, unit, evidence.whole);
   Comparison comparison = CompareCut(cut, evidence.ct, std::move(cuts), window);

@@ -51,17 +51,19 @@ AddChart(const Chart & chart, const std::string & description, ReportPage & page
 }
 
 void
-AddDensityCharts(const BuildReport & report, const Evaluation & evaluation, ReportPage & page)
+AddDensityCharts(const BuildReport & report, const std::vector<double> & lowerDegrees, ReportPage & page)
 {
   Chart degrees;
   degrees.x.label = "degree";
   degrees.y.label = "mean absolute error (% of range)";
   degrees.y.lower = 0.0;
   degrees.series.push_back({ "level 1", {} });
-  for (std::size_t n = 0; n < evaluation.degreeErrors.size(); ++n)
+  auto & points = degrees.series[0].points;
+  for (const double error : lowerDegrees)
   {
-    degrees.series[0].points.push_back({ static_cast<double>(n), evaluation.degreeErrors[n] });
+    points.push_back({ static_cast<double>(points.size()), error });
   }
+  points.push_back({ static_cast<double>(points.size()), report.levels.front().density.meanAbsolutePercent });
   AddChart(
     degrees,
     "Density error of level 1 to the CT where each tetrahedron's polynomial is cut to a degree: its nearest one of "
@@ -163,7 +165,7 @@ MakeBuildPage(const BuildReport & report,
                   "Radiographs of the CT and of the levels, and their differences",
                   "Line integrals of density: those of the CT count the bone's voxels alone");
   page.BeginSection("density", "Density");
-  AddDensityCharts(report, evaluation, page);
+  AddDensityCharts(report, LowerDegreeErrors(meshes.front(), evidence.ct, evaluation.mask), page);
   page.BeginSection("quality", "Quality of the tetrahedra");
   AddQualityCharts(report, page);
   return page;

@@ -132,7 +132,7 @@ CompareWithImage(const MeshArrays & mesh, const CTImage * ct, const LabelImage *
 }
 
 std::vector<double>
-DegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask)
+LowerDegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mask)
 {
   std::vector<double> errors;
   MeshArrays          cut = mesh;
@@ -149,7 +149,6 @@ DegreeErrors(const MeshArrays & mesh, const CTImage * ct, const LabelImage * mas
     }
     errors.push_back(CompareWithImage(cut, ct, mask).meanAbsolutePercent);
   }
-  errors.push_back(CompareWithImage(mesh, ct, mask).meanAbsolutePercent);
   return errors;
 }
 
