@@ -91,6 +91,8 @@ ToJson(const TilingReport & tiling)
 {
   return { { "slabs", tiling.slabs },
            { "branchings", tiling.branchings },
+           { "splitBranchings", tiling.splitBranchings },
+           { "filledBranchings", tiling.filledBranchings },
            { "layerBranchings", tiling.layerBranchings },
            { "caps", tiling.caps },
            { "flatCuts", tiling.flatCuts },

@@ -54,6 +54,8 @@ DescribeReport(const TilingReport & report)
   return py::dict(py::arg("sections") = report.sections,
                   py::arg("slabs") = report.slabs,
                   py::arg("branchings") = report.branchings,
+                  py::arg("split_branchings") = report.splitBranchings,
+                  py::arg("filled_branchings") = report.filledBranchings,
                   py::arg("layer_branchings") = report.layerBranchings,
                   py::arg("caps") = report.caps,
                   py::arg("flat_cuts") = report.flatCuts,
