@@ -81,10 +81,11 @@ main(int argc, char * argv[])
               << "\npinched " << pinched << "\npoints " << mesh.points.size() << "\ntetrahedra "
               << mesh.tetrahedra.size() << "\nslabs " << report.slabs << "\nbranchings " << report.branchings
               << "\nsplit_branchings " << report.splitBranchings << "\nfilled_branchings " << report.filledBranchings
-              << "\nlayer_branchings " << report.layerBranchings << "\nfilled "
-              << report.filledSlabs + report.filledEnds << "\nleft_out " << report.loopsLeftOut + report.holesLeftOut
-              << "\nparted " << report.separatedGroups << "\npatches " << report.patches << "\nleast_angle " << least
-              << "\nmean_angle " << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
+              << "\nsplit_fillings " << report.splitFillings << "\nlayer_branchings " << report.layerBranchings
+              << "\nfilled " << report.filledSlabs + report.filledEnds << "\nleft_out "
+              << report.loopsLeftOut + report.holesLeftOut << "\nparted " << report.separatedGroups << "\npatches "
+              << report.patches << "\nleast_angle " << least << "\nmean_angle "
+              << sum / static_cast<double>(mesh.tetrahedra.size()) << '\n';
     const double pixel = random ? 0.1 : 0.2; // mm; random bodies have walls thinner than bones
     for (int region = 1; region <= 3; ++region)
     {

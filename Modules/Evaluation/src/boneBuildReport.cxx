@@ -93,6 +93,7 @@ ToJson(const TilingReport & tiling)
            { "branchings", tiling.branchings },
            { "splitBranchings", tiling.splitBranchings },
            { "filledBranchings", tiling.filledBranchings },
+           { "splitFillings", tiling.splitFillings },
            { "layerBranchings", tiling.layerBranchings },
            { "caps", tiling.caps },
            { "flatCuts", tiling.flatCuts },

@@ -17,8 +17,9 @@ struct TilingReport
   int sections{ 0 };         ///< pieces of bone over all slices
   int slabs{ 0 };            ///< groups of corresponding pieces
   int branchings{ 0 };       ///< of these, with several pieces on one side
-  int splitBranchings{ 0 };  ///< of these, tiled by splitting the one piece
+  int splitBranchings{ 0 };  ///< of these, knitted with parts of the one piece
   int filledBranchings{ 0 }; ///< of these, in slabs that were filled; all others were joined by bridges
+  int splitFillings{ 0 };    ///< of those in filled slabs, with the one piece split
   int layerBranchings{ 0 };  ///< of the groups, with a layer on one side only
   int caps{ 0 };             ///< ends closed by a ridge
   int flatCuts{ 0 };         ///< ends left flat because the bone leaves the image

@@ -242,7 +242,15 @@ private:
     m_Report.filledBranchings += branchings;
     m_Tetrahedra.resize(begin);
     m_Fillings.push_back([this, k, low, high](const Execution & execution) {
-      return FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool, execution);
+      return FillSlab(m_Stack,
+                      m_Sections[k],
+                      m_Sections[k + 1],
+                      m_Groups[k],
+                      low,
+                      high,
+                      m_Pool,
+                      execution,
+                      m_Guide.branching == BranchingKind::Splitting);
     });
     ++m_Report.filledSlabs;
   }
@@ -393,6 +401,7 @@ private:
         std::rethrow_exception(errors[i]);
       }
       Append(fillings[i]);
+      m_Report.splitFillings += fillings[i].split;
       Report(fillings[i]);
     }
   }

@@ -56,6 +56,7 @@ DescribeReport(const TilingReport & report)
                   py::arg("branchings") = report.branchings,
                   py::arg("split_branchings") = report.splitBranchings,
                   py::arg("filled_branchings") = report.filledBranchings,
+                  py::arg("split_fillings") = report.splitFillings,
                   py::arg("layer_branchings") = report.layerBranchings,
                   py::arg("caps") = report.caps,
                   py::arg("flat_cuts") = report.flatCuts,

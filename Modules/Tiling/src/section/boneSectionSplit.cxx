@@ -3,7 +3,7 @@
  *=========================================================================*/
 #include "boneSectionSplit.h"
 
-#include "boneTriangleTree.h"
+#include "boneContourDistance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -167,12 +167,6 @@ PartBetween(const Section & section, const CutChain & a, const CutChain & b)
   return part;
 }
 
-Vector3
-OnPlane(const Vector2 & q)
-{
-  return { q.x(), q.y(), 0.0 };
-}
-
 double
 CrossProduct(const Vector2 & u, const Vector2 & v)
 {
@@ -196,46 +190,6 @@ AreaOf(const std::vector<std::vector<Vector2>> & polygons, Vector2 & moment)
   }
   return 0.5 * twice;
 }
-
-/** Distance to a contour, negative inside. */
-class ContourDistance
-{
-public:
-  ContourDistance(const std::vector<Vector2> & polygon, const Vector2 & move)
-  {
-    std::vector<TriangleTree::Triangle> segments;
-    for (const Vector2 & q : polygon)
-    {
-      m_Polygon.push_back(q + move);
-    }
-    for (std::size_t i = 0; i < m_Polygon.size(); ++i)
-    {
-      const Vector3 from = OnPlane(m_Polygon[i]), to = OnPlane(m_Polygon[(i + 1) % m_Polygon.size()]);
-      segments.push_back({ { from, to, to } });
-    }
-    m_Segments = TriangleTree(std::move(segments));
-  }
-
-  double
-  At(const Vector2 & q) const
-  {
-    bool inside = false;
-    for (std::size_t i = 0; i < m_Polygon.size(); ++i)
-    {
-      const Vector2 &a = m_Polygon[i], &b = m_Polygon[(i + 1) % m_Polygon.size()];
-      if ((a.y() > q.y()) != (b.y() > q.y()) && q.x() < a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      {
-        inside = !inside;
-      }
-    }
-    const double distance = std::sqrt(m_Segments.FindNearest(OnPlane(q)).squaredDistance);
-    return inside ? -distance : distance;
-  }
-
-private:
-  std::vector<Vector2> m_Polygon;
-  TriangleTree         m_Segments;
-};
 
 /** Splits off one part after the other. */
 class Splitter
