@@ -165,14 +165,44 @@ TEST(Branching, CompositeIsTheDefaultAndTheKindsDiffer)
   EXPECT_NE(composite.mesh.tetrahedra, filling.mesh.tetrahedra);
   EXPECT_NE(splitting.mesh.tetrahedra, filling.mesh.tetrahedra);
   const auto counts = [](const Tiled & tiled) {
-    return std::vector<int>{ tiled.report.branchings, tiled.report.splitBranchings, tiled.report.filledBranchings };
+    return std::vector<int>{
+      tiled.report.branchings, tiled.report.splitBranchings, tiled.report.filledBranchings, tiled.report.splitFillings
+    };
   };
-  EXPECT_EQ(counts(composite), (std::vector<int>{ 1, 0, 0 }));
-  EXPECT_EQ(counts(splitting), (std::vector<int>{ 1, 1, 0 }));
-  EXPECT_EQ(counts(filling), (std::vector<int>{ 1, 0, 1 }));
+  EXPECT_EQ(counts(composite), (std::vector<int>{ 1, 0, 0, 0 }));
+  EXPECT_EQ(counts(splitting), (std::vector<int>{ 1, 1, 0, 0 }));
+  EXPECT_EQ(counts(filling), (std::vector<int>{ 1, 0, 1, 0 }));
   for (const Tiled * tiled : { &composite, &splitting, &filling })
   {
     ExpectAsStack(*tiled, *stack, "three kinds");
+  }
+}
+
+TEST(Branching, WhatIsSplitInAFilledSlabHasAValleyAboveTheCut)
+{
+  // Five pieces bend too much to be knitted. Split, the bone between them is lower, and no less of it on the slice.
+  const auto  stack = bone::MakeStack(Radial(5), 3.0, 36);
+  const Tiled splitting = Tile(*stack, BranchingKind::Splitting), filling = Tile(*stack, BranchingKind::Filling);
+  ASSERT_EQ(splitting.report.filledBranchings, 1);
+  EXPECT_EQ(splitting.report.splitFillings, 1);
+  EXPECT_EQ(filling.report.splitFillings, 0);
+  const auto between = [](const MeshArrays & mesh) {
+    double height = 0.0; // the largest of the boundary about the centre
+    for (const auto & face : bone::BoundaryFaces(mesh, 1))
+    {
+      for (const bone::IdType v : face)
+      {
+        const bool central = std::hypot(mesh.points[v].x(), mesh.points[v].y()) < 4.0;
+        height = central && mesh.points[v].z() < 9.0 ? std::max(height, mesh.points[v].z()) : height;
+      }
+    }
+    return height;
+  };
+  EXPECT_GT(between(splitting.mesh), 6.0);
+  EXPECT_LT(between(splitting.mesh), between(filling.mesh) - 0.3);
+  for (const Tiled * tiled : { &splitting, &filling })
+  {
+    ExpectAsStack(*tiled, *stack, "five");
   }
 }
 
@@ -184,10 +214,11 @@ TEST(Branching, SeveralAgainstSeveralAreFilled)
   const Tiled             tiled = Tile(*stack, BranchingKind::Splitting);
   ExpectAsStack(tiled, *stack, "several");
   EXPECT_EQ(tiled.report.splitBranchings, 0);
+  EXPECT_EQ(tiled.report.splitFillings, 0);
   EXPECT_EQ(tiled.report.filledBranchings, 1);
 }
 
-TEST(Branching, WhatEndsOnItsOwnSliceIsNotSplit)
+TEST(Branching, WhatEndsOnItsOwnSliceIsNotKnittedInParts)
 {
   // Flat cut or closed by a ridge, the one piece has nothing beyond the cut that would hold the parts together.
   Slices slices = TwoBranches(1.0, true);
