@@ -166,6 +166,7 @@ class BadUsage(TestCase):
         self.refuse_usage("contours", "ct.nii.gz", "--labels", "l.nii.gz", "-o", "out.vtp", "--axis", "w")
         self.refuse_usage("mesh", "c.vtp", "--metric", "density", "-o", "out.vtu", says="--ct")
         self.refuse_usage("mesh", "c.vtp", "--metric", "beauty", "-o", "out.vtu")
+        self.refuse_usage("mesh", "c.vtp", "--branching", "bridges", "-o", "out.vtu", says="--branching")
         self.refuse_usage("simplify", "m.vtu", "--tetrahedra", 100, "--levels", 0.5, "-o", "out", says="--levels")
         self.refuse_usage("simplify", "m.vtu", "--tetrahedra", 100, 200, "-o", "out")
         self.refuse_usage("phantom", "--bone", "skull", "-o", "ct.nii.gz")

@@ -196,6 +196,9 @@ class Commands(TestCase):
         self.succeed("validate", "m.vtu")
         self.succeed("mesh", "c.vtp", "--metric", "span", "-o", "span.vtu")
         self.succeed("validate", "span.vtu")
+        for branching in ("composite", "splitting", "filling"):
+            self.succeed("mesh", "c.vtp", "--branching", branching, "-o", f"{branching}.vtu")
+            self.succeed("validate", f"{branching}.vtu")
         out, _ = self.succeed("contours", "ct.nii.gz", "--labels", "l.nii.gz", "--slice-step", 4, "--tetrahedra", 25000,
                               "--write-all-slices", "all.vtp", "-o", "asked.vtp")
         self.assertIn("on average 4 mm apart", out)

@@ -91,6 +91,9 @@ ToJson(const TilingReport & tiling)
 {
   return { { "slabs", tiling.slabs },
            { "branchings", tiling.branchings },
+           { "splitBranchings", tiling.splitBranchings },
+           { "filledBranchings", tiling.filledBranchings },
+           { "splitFillings", tiling.splitFillings },
            { "layerBranchings", tiling.layerBranchings },
            { "caps", tiling.caps },
            { "flatCuts", tiling.flatCuts },

@@ -8,6 +8,7 @@
 #include "boneExecution.h"
 #include "boneMeshArrays.h"
 #include "boneTilingMetric.h"
+#include "boneTilingParameters.h"
 #include "boneTilingReport.h"
 
 #include <memory>
@@ -21,6 +22,8 @@ struct TilingGuide
   std::shared_ptr<const TilingMetric> metric;
   /** Correspondence of pieces in some slabs, used there in place of overlap and distance. */
   std::shared_ptr<const ContourCorrespondence> correspondence;
+  /** How several pieces are tiled with one. */
+  BranchingKind branching{ BranchingKind::Composite };
 };
 
 /** \brief Tiles a stack of nested contours into a layered, conforming tetrahedral mesh (paper 2.2 to 2.6).
@@ -28,7 +31,8 @@ struct TilingGuide
  * 1. Each slice is triangulated once: the rings between its nested contours and about the medial axis. Both slabs that
  *    meet at the slice share these triangles (continuity between slices).
  * 2. Pieces of neighbouring slices are matched by overlap and distance; several pieces against one are joined by
- *    bridges into a composite contour; a layer that is missing on one side collapses onto the next contour inward.
+ *    bridges into a composite contour, or the one is split into parts, or the slab is filled (TilingGuide::branching);
+ * a layer that is missing on one side collapses onto the next contour inward.
  * 3. Each pair is knitted from the inside out: the wall between the medial axes first, then ring after ring, the wall
  *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
  * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.

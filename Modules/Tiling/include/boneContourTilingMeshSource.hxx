@@ -83,6 +83,7 @@ ContourTilingMeshSource<TMesh, TImage>::GenerateData()
   TilingGuide guide;
   guide.metric = m_MetricObject ? m_MetricObject : MakeTilingMetric(m_Parameters.metric, this->MakeSampler());
   guide.correspondence = m_Correspondence;
+  guide.branching = m_Parameters.branching;
   this->GetInput()->Verify();
   try
   {

@@ -17,7 +17,10 @@ struct TilingReport
   int sections{ 0 };         ///< pieces of bone over all slices
   int slabs{ 0 };            ///< groups of corresponding pieces
   int branchings{ 0 };       ///< of these, with several pieces on one side
-  int layerBranchings{ 0 };  ///< of these, with a layer on one side only
+  int splitBranchings{ 0 };  ///< of these, knitted with parts of the one piece
+  int filledBranchings{ 0 }; ///< of these, in slabs that were filled; all others were joined by bridges
+  int splitFillings{ 0 };    ///< of those in filled slabs, with the one piece split
+  int layerBranchings{ 0 };  ///< of the groups, with a layer on one side only
   int caps{ 0 };             ///< ends closed by a ridge
   int flatCuts{ 0 };         ///< ends left flat because the bone leaves the image
   int edgesRefined{ 0 };     ///< contour edges split because they were long against a thin layer

@@ -72,6 +72,13 @@ PointsAroundVoids(const MeshArrays & mesh)
   return around;
 }
 
+/** Whether several pieces belong to one or more of the other slice. */
+bool
+IsBranching(const Group & group)
+{
+  return !group.lower.empty() && !group.upper.empty() && group.lower.size() + group.upper.size() > 2;
+}
+
 /** Tiles all slabs of a stack in order. The holes in `closed` are left out; those around voids are added to it. */
 class StackTiler
 {
@@ -226,13 +233,24 @@ private:
       Count(Pick(k, group.lower), Pick(k + 1, group.upper));
       tiled = tiled && TileGroup(k, group);
     }
+    const auto branchings = static_cast<int>(std::count_if(m_Groups[k].begin(), m_Groups[k].end(), IsBranching));
     if (tiled && !WallsCross(m_Pool, m_Stack, m_Tetrahedra, begin, low, high))
     {
+      m_Report.splitBranchings += m_Guide.branching == BranchingKind::Splitting ? branchings : 0;
       return;
     }
+    m_Report.filledBranchings += branchings;
     m_Tetrahedra.resize(begin);
     m_Fillings.push_back([this, k, low, high](const Execution & execution) {
-      return FillSlab(m_Stack, m_Sections[k], m_Sections[k + 1], m_Groups[k], low, high, m_Pool, execution);
+      return FillSlab(m_Stack,
+                      m_Sections[k],
+                      m_Sections[k + 1],
+                      m_Groups[k],
+                      low,
+                      high,
+                      m_Pool,
+                      execution,
+                      m_Guide.branching == BranchingKind::Splitting);
     });
     ++m_Report.filledSlabs;
   }
@@ -248,9 +266,34 @@ private:
     {
       return std::all_of(group.upper.begin(), group.upper.end(), [&](int i) { return TryCap(k + 1, i, false); });
     }
-    // Composites are for several pieces against one.
-    return (group.lower.size() == 1 || group.upper.size() == 1) &&
-           (m_Slabs.TryDirect(Pick(k, group.lower), Pick(k + 1, group.upper)) || TryOtherAxes(k, group));
+    return CanBeKnitted(k, group) &&
+           (TryKnit(group, Pick(k, group.lower), Pick(k + 1, group.upper)) || TryOtherAxes(k, group));
+  }
+
+  /** Whether there is a way to knit a group with pieces on both slices: composites and splitting are for several pieces
+   * against one. What is split must go on beyond its slice: in parts that meet nothing but each other at the cut, four
+   * faces would meet there. */
+  bool
+  CanBeKnitted(int k, const Group & group) const
+  {
+    if (!IsBranching(group))
+    {
+      return true;
+    }
+    const bool oneBelow = group.lower.size() == 1, oneAbove = group.upper.size() == 1;
+    if ((!oneBelow && !oneAbove) || m_Guide.branching == BranchingKind::Filling)
+    {
+      return false;
+    }
+    return m_Guide.branching == BranchingKind::Composite ||
+           (oneBelow ? Continues(k, group.lower.front(), false) : Continues(k + 1, group.upper.front(), true));
+  }
+
+  bool
+  TryKnit(const Group & group, const std::vector<Section> & lower, const std::vector<Section> & upper)
+  {
+    return m_Guide.branching == BranchingKind::Splitting && IsBranching(group) ? m_Slabs.TrySplit(lower, upper)
+                                                                               : m_Slabs.TryDirect(lower, upper);
   }
 
   void
@@ -282,7 +325,7 @@ private:
         upper.push_back(
           Build(k + 1, i, carry ? m_Carried[i] : PlanarTree{}, std::numeric_limits<double>::max(), scratch));
       }
-      if (m_Slabs.TryDirect(Pick(k, group.lower), upper))
+      if (TryKnit(group, Pick(k, group.lower), upper))
       {
         for (std::size_t i = 0; i < upper.size(); ++i)
         {
@@ -358,6 +401,7 @@ private:
         std::rethrow_exception(errors[i]);
       }
       Append(fillings[i]);
+      m_Report.splitFillings += fillings[i].split;
       Report(fillings[i]);
     }
   }

@@ -6,6 +6,7 @@
 #include "boneLayerLinks.h"
 #include "bonePlanarOverlay.h"
 #include "bonePredicates.h"
+#include "boneSlabCuts.h"
 #include "boneSlabSide.h"
 #include "boneSlabSurface.h"
 #include "boneSteinerCollapse.h"
@@ -93,16 +94,18 @@ Joined(const Group & group, const std::set<std::array<int, 2>> & links)
 class SlabFiller
 {
 public:
-  SlabFiller(const ContourStack & stack,
-             const SlabSide &     lower,
-             const SlabSide &     upper,
-             int                  slice,
-             const VertexPool &   pool,
-             const Execution &    execution)
+  SlabFiller(const ContourStack &  stack,
+             const SlabSide &      lower,
+             const SlabSide &      upper,
+             int                   slice,
+             const VertexPool &    pool,
+             std::vector<PieceCut> cuts,
+             const Execution &     execution)
     : m_Stack(stack)
     , m_Sides{ &lower, &upper }
     , m_Slice(slice)
     , m_Pool(pool)
+    , m_Cuts(std::move(cuts))
     , m_Overlay(OverlaySides(lower, upper, execution))
   {}
 
@@ -259,7 +262,8 @@ private:
     const SlabSurface surface = FindSlabSurface({ { &m_Sides[0]->box, &m_Sides[1]->box } },
                                                 { { &m_Sides[0]->region, &m_Sides[1]->region } },
                                                 m_Overlay,
-                                                m_Columns);
+                                                m_Columns,
+                                                MeasureCuts(m_Cuts, { { m_Sides[0], m_Sides[1] } }, m_Overlay));
     SteinerPlaces     places;
     places.tolerance = SurfaceTolerance * (high - low);
     for (std::size_t i = 0; i < surface.height.size(); ++i)
@@ -380,6 +384,7 @@ private:
     constexpr int Unseen = std::numeric_limits<int>::max();
     SlabFilling   result;
     result.slice = m_Slice;
+    result.split = static_cast<int>(m_Cuts.size());
     std::vector<int> least(filled.points.size(), std::numeric_limits<int>::max());
     for (std::size_t t = 0; t < filled.tetrahedra.size(); ++t)
     {
@@ -445,16 +450,17 @@ private:
     }
   }
 
-  const ContourStack & m_Stack;
-  const SlabSide *     m_Sides[2];
-  int                  m_Slice;
-  const VertexPool &   m_Pool;
-  PlanarOverlay        m_Overlay;
-  std::vector<Column>  m_Columns;
-  int                  m_Planes{ 1 };
-  MeshArrays           m_Mesh;
-  IdType               m_First[2];
-  IdType               m_FirstSteiner{ 0 };
+  const ContourStack &  m_Stack;
+  const SlabSide *      m_Sides[2];
+  int                   m_Slice;
+  const VertexPool &    m_Pool;
+  std::vector<PieceCut> m_Cuts;
+  PlanarOverlay         m_Overlay;
+  std::vector<Column>   m_Columns;
+  int                   m_Planes{ 1 };
+  MeshArrays            m_Mesh;
+  IdType                m_First[2];
+  IdType                m_FirstSteiner{ 0 };
 };
 Vector2
 CentroidOf(const VertexPool & pool, const std::vector<Section> & sections, const std::vector<int> & ids)
@@ -531,13 +537,15 @@ public:
           const std::vector<Section> & upper,
           const std::vector<Group> &   groups,
           const VertexPool &           pool,
-          const Execution &            execution)
+          const Execution &            execution,
+          bool                         split)
     : m_Stack(stack)
     , m_Lower(lower)
     , m_Upper(upper)
     , m_Groups(groups)
     , m_Pool(pool)
     , m_Execution(execution)
+    , m_Split(split)
     , m_LowerGroup(lower.size(), -1)
     , m_UpperGroup(upper.size(), -1)
     , m_Slice((lower.empty() ? upper : lower).front().slice)
@@ -617,8 +625,9 @@ private:
       const SlabBounds bounds = BoundsOf(m_Pool, m_Lower, m_Upper, shift);
       alignment->below = MakeSide(m_Pool, m_Lower, m_LowerGroup, bounds, Vector2::Zero());
       alignment->above = MakeSide(m_Pool, m_Upper, m_UpperGroup, bounds, shift);
-      alignment->filler =
-        std::make_unique<SlabFiller>(m_Stack, alignment->below, alignment->above, m_Slice, m_Pool, m_Execution);
+      auto cuts = m_Split ? FindPieceCuts(m_Pool, m_Lower, m_Upper, m_Groups, shift) : std::vector<PieceCut>{};
+      alignment->filler = std::make_unique<SlabFiller>(
+        m_Stack, alignment->below, alignment->above, m_Slice, m_Pool, std::move(cuts), m_Execution);
     }
     catch (const std::runtime_error & error)
     {
@@ -662,6 +671,7 @@ private:
   const std::vector<Group> &              m_Groups;
   const VertexPool &                      m_Pool;
   const Execution &                       m_Execution;
+  bool                                    m_Split;
   std::vector<int>                        m_LowerGroup;
   std::vector<int>                        m_UpperGroup;
   int                                     m_Slice;
@@ -680,9 +690,10 @@ FillSlab(const ContourStack &         stack,
          double                       lowerHeight,
          double                       upperHeight,
          const VertexPool &           pool,
-         const Execution &            execution)
+         const Execution &            execution,
+         bool                         split)
 {
-  return Aligner(stack, lower, upper, groups, pool, execution).Run(lowerHeight, upperHeight);
+  return Aligner(stack, lower, upper, groups, pool, execution, split).Run(lowerHeight, upperHeight);
 }
 } // namespace tiling
 } // namespace bone

@@ -21,7 +21,8 @@ struct SlabFilling
   std::vector<int>        layers;     ///< of its own vertices
   std::vector<TiledTetra> tetrahedra; ///< own vertex i stands as -1 - i
   int                     slice{ 0 };
-  std::vector<int>        separated; ///< groups whose pieces do not all overlap: they are not joined here
+  std::vector<int>        separated;  ///< groups whose pieces do not all overlap: they are not joined here
+  int                     split{ 0 }; ///< groups whose one piece was split between several
 };
 
 /** \brief Fills the space between all sections of two slices, whatever branches, begins or ends there.
@@ -40,6 +41,9 @@ struct SlabFilling
  * slopes between the contours, and domes over what begins or ends. As outside is filled with tetrahedra too, no surface
  * can pass through another.
  *
+ * With `split`, a piece that has several counterparts is divided between them: surfaces run down to where it is as near
+ * to one as to another (\ref PieceCut).
+ *
  * Vertices that could not be collapsed are moved to where they should be and stay. Pieces of a group that do not
  * overlap however the slices are moved end and begin there; the group is named in `separated`. Throws
  * std::runtime_error where the contours are too close to be told apart. */
@@ -51,7 +55,8 @@ FillSlab(const ContourStack &         stack,
          double                       lowerHeight,
          double                       upperHeight,
          const VertexPool &           pool,
-         const Execution &            execution);
+         const Execution &            execution,
+         bool                         split = false);
 } // namespace tiling
 } // namespace bone
 

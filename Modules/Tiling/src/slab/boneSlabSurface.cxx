@@ -54,8 +54,10 @@ public:
   LayerSurface(const std::array<const BoxTriangulation *, 2> & boxes,
                const std::array<const std::vector<int> *, 2> & regions,
                const PlanarOverlay &                           overlay,
+               const CutDistances &                            cuts,
                int                                             layer)
     : m_Overlay(overlay)
+    , m_Cuts(cuts)
     , m_Contours{ ContourTree(*boxes[0], *regions[0], layer), ContourTree(*boxes[1], *regions[1], layer) }
   {
     for (std::size_t t = 0; t < overlay.triangles.size(); ++t)
@@ -106,12 +108,26 @@ public:
           below = farthest[part][1];
         }
         height[v] = below + above > 0 ? below / (below + above) : 0.5;
+        if (touches[part][0] && touches[part][1])
+        {
+          height[v] = AtCuts(v, height[v]);
+        }
       }
     }
     return height;
   }
 
 private:
+  /** The height of vertex v where a cut nearer than the contour of its slice draws the surface to that slice. */
+  double
+  AtCuts(int v, double height) const
+  {
+    const double below = std::min(m_Distance[0][v], m_Cuts[0][v]), above = std::min(m_Distance[1][v], m_Cuts[1][v]);
+    const double drawn = below + above > 0 ? below / (below + above) : 0.5;
+    return drawn < height ? std::min(height, std::max(drawn, LeastAtCut))
+                          : std::max(height, std::min(drawn, 1.0 - LeastAtCut));
+  }
+
   void
   MeasureDistances()
   {
@@ -168,8 +184,10 @@ private:
   }
 
   static constexpr double OnContour = 1e-3; // mm, more than vertices are moved to separate them
+  static constexpr double LeastAtCut = 0.1; ///< share of the slab between a surface and the slice with the cut
 
   const PlanarOverlay &              m_Overlay;
+  const CutDistances &               m_Cuts;
   std::array<TriangleTree, 2>        m_Contours;
   std::vector<int>                   m_Triangles; ///< of the overlay, that the surface passes
   std::vector<int>                   m_Parent;    ///< of their parts
@@ -181,7 +199,8 @@ SlabSurface
 FindSlabSurface(const std::array<const BoxTriangulation *, 2> & boxes,
                 const std::array<const std::vector<int> *, 2> & regions,
                 const PlanarOverlay &                           overlay,
-                const std::vector<Column> &                     columns)
+                const std::vector<Column> &                     columns,
+                const CutDistances &                            cuts)
 {
   const int                        points = static_cast<int>(overlay.points.size());
   const int                        planes = static_cast<int>(columns.front().size()) - 1;
@@ -192,7 +211,7 @@ FindSlabSurface(const std::array<const BoxTriangulation *, 2> & boxes,
   std::vector<std::vector<double>> heights;
   for (int layer = 1; layer <= layers; ++layer)
   {
-    heights.push_back(LayerSurface(boxes, regions, overlay, layer).Heights());
+    heights.push_back(LayerSurface(boxes, regions, overlay, cuts, layer).Heights());
   }
   for (std::size_t t = 0; t < columns.size(); ++t)
   {

@@ -4,7 +4,7 @@
 #ifndef boneSlabSurface_h
 #define boneSlabSurface_h
 
-#include "bonePlanarOverlay.h"
+#include "boneSlabCuts.h"
 
 #include <array>
 #include <vector>
@@ -22,7 +22,8 @@ using Column = std::vector<int>;
  * the slab, 0 on the lower slice and 1 on the upper one: where the signed distance to the surface's contours, each in
  * its slice, interpolated over the height, is zero (shape-based interpolation, S. P. Raya & J. K. Udupa,
  * doi:10.1109/42.52980). On the contours themselves it is their slice. A part of a surface that has contours on one
- * slice only rises to half of the slab where it is farthest from them. */
+ * slice only rises to half of the slab where it is farthest from them. Where a piece is split, its cut counts as a
+ * contour: the surface runs down to it, but for a tenth of the slab, as no surface may meet the inside of a slice. */
 struct SlabSurface
 {
   std::vector<double>             height; ///< of each copy of each overlay vertex; -1 where no surface passes
@@ -31,12 +32,14 @@ struct SlabSurface
 
 /** \param boxes    the slices' triangulations, in the overlay's coordinates
  *  \param regions  region of each triangle of each slice
- *  \param columns  of each triangle of the overlay, all of the same size */
+ *  \param columns  of each triangle of the overlay, all of the same size
+ *  \param cuts     of the pieces that are split */
 SlabSurface
 FindSlabSurface(const std::array<const BoxTriangulation *, 2> & boxes,
                 const std::array<const std::vector<int> *, 2> & regions,
                 const PlanarOverlay &                           overlay,
-                const std::vector<Column> &                     columns);
+                const std::vector<Column> &                     columns,
+                const CutDistances &                            cuts);
 } // namespace tiling
 } // namespace bone
 

@@ -184,6 +184,37 @@ SlabTiler::TryDirect(const std::vector<Section> & lower, const std::vector<Secti
   return true;
 }
 
+bool
+SlabTiler::TrySplit(const std::vector<Section> & lower, const std::vector<Section> & upper)
+{
+  const bool                        oneBelow = lower.size() == 1;
+  const std::vector<Section> &      several = oneBelow ? upper : lower;
+  std::vector<std::vector<Vector2>> counterparts;
+  for (const Section & section : several)
+  {
+    counterparts.push_back(OuterPolygon(m_Pool.plane, section));
+  }
+  CutTrace             cuts;
+  std::vector<Section> parts;
+  if (!SplitSection(m_Pool.plane, (oneBelow ? lower : upper).front(), counterparts, m_Cuts, cuts, parts))
+  {
+    return false;
+  }
+  const std::size_t   mark = m_Tetrahedra.size();
+  const std::set<int> collapsed = m_Collapsed;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    if (oneBelow ? !TryDirect({ parts[i] }, { several[i] }) : !TryDirect({ several[i] }, { parts[i] }))
+    {
+      m_Tetrahedra.resize(mark);
+      m_Collapsed = collapsed;
+      return false;
+    }
+  }
+  m_Cuts.Add(cuts);
+  return true;
+}
+
 void
 SlabTiler::MarkCollapsed(const Section & section)
 {

@@ -10,6 +10,7 @@
 #include "boneRingKnit.h"
 #include "boneSectionBuilder.h"
 #include "boneSectionJoin.h"
+#include "boneSectionSplit.h"
 #include "boneTilingReport.h"
 
 namespace bone
@@ -37,6 +38,11 @@ public:
   /** Knits the sections of two planes that belong together, if that can be done as it is. */
   bool
   TryDirect(const std::vector<Section> & lower, const std::vector<Section> & upper);
+
+  /** Knits the single section of one plane, split into parts, with those of the other, if that can be done
+   * (\ref SplitSection). */
+  bool
+  TrySplit(const std::vector<Section> & lower, const std::vector<Section> & upper);
 
   /** Closes a section by a ridge over its medial axis at `height` (above or below its own), if it has one and that can
    * be done. */
@@ -73,6 +79,7 @@ private:
   const Execution &         m_Execution;
   EdgeSet                   m_UsedEdges; ///< edges that bridges run along
   std::set<int>             m_Collapsed; ///< vertices of axes at which a layer ends
+  CutTrace                  m_Cuts;      ///< of the sections that were split
 };
 
 /** True where the outer walls of the tetrahedra from `begin` on cross each other, looked at in planes between the
