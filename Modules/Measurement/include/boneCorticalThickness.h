@@ -37,6 +37,7 @@ struct CorticalThicknessMap
   TriangleSurface             surface;
   std::vector<IdType>         pointId;   ///< the mesh's id of each point
   std::vector<double>         thickness; ///< mm; NaN where the status is not Found
+  std::vector<double>         fitted;    ///< the same without replaced outliers and smoothing
   std::vector<double>         density;   ///< HU, of the cortex; NaN likewise
   std::vector<CorticalStatus> status;
   CTBlur                      blur;

@@ -250,6 +250,7 @@ private:
       const bool found = fit.status == CorticalStatus::Found;
       m_Map.status.push_back(fit.status);
       m_Map.thickness.push_back(found ? fit.cortex.thickness : NotANumber);
+      m_Map.fitted.push_back(m_Map.thickness.back());
       m_Map.density.push_back(found ? fit.cortex.cortical : NotANumber);
     }
   }

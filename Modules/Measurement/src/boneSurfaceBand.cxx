@@ -112,19 +112,18 @@ SurfaceBand::SurfaceBand(const TriangleSurface &   surface,
         for (int i = block.begin[0]; i < block.end[0]; ++i)
         {
           const Vector3 x = ct.grid.Centre(i, j, k);
-          const auto    nearest = sides.FindNearest(x);
-          const double  distance = std::sqrt(nearest.squaredDistance);
-          if (distance > std::max(outside, inside))
+          const auto    nearest = m_Whole.FindNearest(x);
+          const bool    within = nearest.distance < 0.0, atCut = cut[static_cast<std::size_t>(nearest.triangle)];
+          if (std::abs(nearest.distance) > (within ? inside : outside) || (atCut && !within))
           {
             continue;
           }
-          const auto   first = m_Whole.FindNearest(x);
-          const bool   within = first.distance < 0.0;
-          const double depth = within ? distance : -distance;
-          if (depth >= -outside && depth <= inside && (within || !cut[static_cast<std::size_t>(first.triangle)]))
+          const Vector3 foot = atCut ? sides.FindNearest(x).point : nearest.point;
+          const double  distance = (x - foot).norm();
+          if (distance <= (within ? inside : outside))
           {
             const std::size_t at = (static_cast<std::size_t>(k) * ct.grid.size[1] + j) * ct.grid.size[0] + i;
-            found[b].push_back({ nearest.point, { depth, ct.value(at) } });
+            found[b].push_back({ foot, { within ? distance : -distance, ct.value(at) } });
           }
         }
       }
