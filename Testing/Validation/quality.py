@@ -201,12 +201,12 @@ def contour_distances(rows):
            "Distances in mm (mean, 95 percentile, largest) between each surface and the contours of all slices, periosteal for the",
            "boundary and endosteal for the interfaces: from points on the contours to the surface, and from the surface's corners and",
            "centroids to the shape that the contours describe, interpolated between slices, away from caps (where the shape's normal lies",
-           "within 45 degrees of the slices).\n",
+           "within 45 degrees of the slices). The latter are of first order and say nothing of the largest, where contours end or part.\n",
            "| bone | surface | from contours: tiled | made | to contours: tiled | made |", "|---|---|---|---|---|---|"]
     for name, row in rows:
         for level, surface in SURFACES.items():
             if f"after.level{level}.from_contours.mean" in row.values:
-                cells = [f"{row[key + '.mean']:.2f}, {row[key + '.percentile95']:.2f}, {row[key + '.largest']:.1f}"
+                cells = [f"{row[key + '.mean']:.2f}, {row[key + '.percentile95']:.2f}" + (f", {row[key + '.largest']:.1f}" if way == "from" else "")
                          for way in ("from", "to") for key in (f"{when}.level{level}.{way}_contours" for when in ("before", "after"))]
                 out.append(f"| {name} | {surface} | {' | '.join(cells)} |")
     return out

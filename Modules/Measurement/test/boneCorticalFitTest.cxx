@@ -121,6 +121,8 @@ TEST(CorticalFit, WhereNothingStandsOutThereIsNoCortex)
   EXPECT_EQ(flat.status, CorticalStatus::None);
   const CorticalFit step = FitCortex(SamplesOf({ 0.0, 1.0, 40.0, 300.0, 300.0, Blur }), Known());
   EXPECT_EQ(step.status, CorticalStatus::None);
+  const CorticalFit faint = FitCortex(SamplesOf({ 0.0, 4.0, 40.0, 500.0, 420.0, Blur }), CorticalFitRules());
+  EXPECT_EQ(faint.status, CorticalStatus::None);
 }
 
 TEST(CorticalFit, WhatIsDenseToItsEndIsSolid)
