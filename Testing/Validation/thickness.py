@@ -153,7 +153,8 @@ def main():
 CTs of phantoms: the blur is a Gaussian of 1 mm full width at half maximum (standard deviation 0.42 mm) along each axis, the noise 20 HU,
 and {SEEDS} seeds of the noise are taken together. The thickness is measured at the points of the outer surface of a model that `bonetk build`
 made, and compared with the phantom's along its normal. Errors are in mm: mean, standard deviation (sd), 95 percentile of the absolute error
-(p95). "Found" is the share of the points that have a result by the fit, in percent.
+(p95). "Found" is the share of the points that have a result by the fit, in percent. The phantoms' blur is the Gaussian that the fit assumes, and their
+cortex is homogeneous but for the last table: a scanner's kernel and a porous cortex will do worse.
 
 Three ways: the fit of a blurred cortex (`bonetk thickness`), the half-maximum rule on the line along the normal in the linearly interpolated
 CT (`FindCorticalEdges`), and its width freed of the known blur (`ThicknessOfBlurredLayer`).
@@ -181,7 +182,8 @@ blur's full width at half maximum, in the slices' plane and across (mm; true: {D
 
 The analytic bones of `bonetk phantom`, voxels of 0.7 × 0.7 × 1 mm, by true thickness. Thin cortex is less dense here (femur: 1280 HU at the head,
 1620 HU at the shaft) than thick cortex, whose density the fit takes for it: where the density is too high by a share, the thickness of
-thin cortex is too low by about that share. `--cortical-density` says otherwise.
+thin cortex is too low by about that share. `--cortical-density` says otherwise. Where two cortices of the hemipelvis meet, the phantom's
+thickness is the plate's, which no way measures.
 
 | bone | thickness, mm | points | density | smoothed: {head} half maximum: {head} freed of blur: {head} found, % |
 |{'---|' * 14}
