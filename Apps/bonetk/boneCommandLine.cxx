@@ -255,6 +255,7 @@ AddCommands(CLI::App & app, Action & action, Session & session)
   AddLabelCommand(app, action);
   AddEvaluateCommand(app, action);
   AddMeasureCommand(app, action);
+  AddThicknessCommand(app, action);
   AddPlanCommand(app, action);
   AddExportCommand(app, action);
   AddValidateCommand(app, action);

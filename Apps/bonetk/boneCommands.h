@@ -64,6 +64,8 @@ AddEvaluateCommand(CLI::App & app, Action & action);
 void
 AddMeasureCommand(CLI::App & app, Action & action);
 void
+AddThicknessCommand(CLI::App & app, Action & action);
+void
 AddPlanCommand(CLI::App & app, Action & action);
 void
 AddExportCommand(CLI::App & app, Action & action);

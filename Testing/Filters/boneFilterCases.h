@@ -8,6 +8,7 @@
 #include "boneAtlasVolumeRegistration.h"
 #include "boneAttenuationImageFilter.h"
 #include "boneBuildPipeline.h"
+#include "boneCorticalThicknessFilter.h"
 #include "boneDRRAdjointFilter.h"
 #include "boneDRRDerivativeImageFilter.h"
 #include "boneDeformableRadiographRegistration.h"
@@ -126,6 +127,12 @@ BONE_CASE(FitCase, DensityFitFilter<CTImage>, "Mesh", true, BONE_DENSITY_FIT_PAR
 BONE_CASE(CalibrationCase, DensityCalibrationFilter<>, "Mesh", false, BONE_DENSITY_CALIBRATION_PARAMETERS, {
   f.SetInput(missing ? nullptr : s.pipeline.GetFit()->GetOutput());
   f.SetLine(3.0, 0.8, DensityQuantity::HydroxyapatiteMilligramPerCubicCentimetre);
+});
+BONE_CASE(ThicknessCase, CorticalThicknessFilter<CTImage>, "Mesh", true, BONE_CORTICAL_THICKNESS_PARAMETERS, {
+  f.SetImage(s.ct);
+  f.SetMesh(missing ? nullptr : s.pipeline.GetQuality()->GetOutput());
+  f.SetPointSpread(3.0);
+  f.SetCorticalDensity(1500.0);
 });
 BONE_CASE(DensityImageCase, DensityImageFilter<>, "Mesh", false, BONE_DENSITY_IMAGE_PARAMETERS, {
   f.SetInput(missing ? nullptr : s.pipeline.GetFit()->GetOutput());

@@ -81,6 +81,16 @@ BytesOf(const itk::DataObject * output)
       Append(bytes, std::array<double, 1>{ x });
     }
   }
+  else if (const auto * thickness = dynamic_cast<const CorticalThicknessFilter<CTImage>::OutputType *>(output))
+  {
+    const CorticalThicknessMap & map = thickness->Get();
+    for (std::size_t p = 0; p < map.thickness.size(); ++p)
+    {
+      Append(bytes, map.thickness[p]);
+      Append(bytes, map.density[p]);
+      Append(bytes, map.status[p]);
+    }
+  }
   else if (const auto * image = dynamic_cast<const CTImage *>(output))
   {
     const std::size_t pixels = image->GetBufferedRegion().GetNumberOfPixels();
@@ -229,6 +239,7 @@ using Cases = testing::Types<PhantomCase,
                              SwapCase,
                              FitCase,
                              CalibrationCase,
+                             ThicknessCase,
                              DensityImageCase,
                              CollapseCase,
                              LevelCase,

@@ -5,6 +5,10 @@ import os
 import tempfile
 import unittest
 
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
 from bonetk_testing import EXAMPLES, TestCase, bonetk, main, read_json, run, write_json
 
 # Of the mean femur phantom: head's centre and radius, and the pose of its landmarks.
@@ -159,6 +163,34 @@ class Measure(TestCase):
         self.assertEqual(code, 0, err)
         self.assertIn("anteversion was not measured: landmark medial_condyle is missing", out)
         self.assertIn("in the middle of the head", out)
+
+    def test_thickness(self):
+        out, _ = self.succeed("thickness", "m/model.hierarchy.json", self.made.name + "/ct.nii.gz", "--point-spread", 1.5, "--report",
+                              "t.json", "-o", "t.vtp")
+        report = read_json("t.json")
+        self.assertIn(f"mean {report['thickness']['mean']:.2f} mm", out)
+        self.assertEqual(report["pointSpread"], {"unit": "mm", "inPlane": 1.5, "across": 1.5})
+        self.assertAlmostEqual(sum(report["shareOfArea"].values()), 1)
+        self.assertGreater(report["shareOfArea"]["found"], 0.9)
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName("t.vtp")
+        reader.Update()
+        surface = reader.GetOutput()
+        data = surface.GetPointData()
+        thickness, density, status = (vtk_to_numpy(data.GetArray("Cortical" + name)) for name in ("Thickness", "Density", "Status"))
+        self.assertEqual(data.GetScalars().GetName(), "CorticalThickness")
+        self.assertEqual(len(thickness), report["points"])
+        for values in (thickness, density):
+            self.assertTrue((numpy.isfinite(values) == (status == 1)).all())
+        # The shaft's cortex is 5.2 mm thick, the head's 1.3 mm.
+        points = vtk_to_numpy(surface.GetPoints().GetData())
+        shaft = thickness[(points[:, 2] < -120) & (points[:, 2] > -180) & (status == 1)]
+        self.assertAlmostEqual(float(numpy.median(shaft)), 5.2, delta=0.3)
+        head = thickness[(points[:, 2] > 40) & (status == 1)]
+        self.assertLess(float(numpy.median(head)), 1.5)
+        self.refuse("thickness", "m/model_L1.vtu", "none.mha", "-o", "x.vtp", says="none.mha")
+        self.refuse_usage("thickness", "m/model_L1.vtu", self.made.name + "/ct.nii.gz", "-o", "x.ply", says=".vtp")
+        self.refuse_usage("thickness", "m/model_L1.vtu", self.made.name + "/ct.nii.gz", "--depth", 0, "-o", "x.vtp", says="--depth")
 
     def test_refusals(self):
         self.refuse_usage("measure", "m/model_L1.vtu", "-o", "x.txt", says=".json")

@@ -315,6 +315,64 @@ Distance(const std::vector<bone::TriangleTree::Triangle> & from, const bone::Tri
   return { sum / area, largest };
 }
 
+void
+PrintDistances(const std::string & name, std::vector<double> distances)
+{
+  if (distances.empty())
+  {
+    return;
+  }
+  double sum = 0.0;
+  for (const double distance : distances)
+  {
+    sum += distance;
+  }
+  std::sort(distances.begin(), distances.end());
+  const auto last = static_cast<double>(distances.size() - 1);
+  std::cout << name << ".mean " << sum / (last + 1.0) << '\n'
+            << name << ".percentile95 " << distances[static_cast<std::size_t>(0.95 * last)] << '\n'
+            << name << ".largest " << distances.back() << '\n';
+}
+
+/** Distances between each surface (the boundary and the interfaces between regions) and the contours it was made of:
+ * from points on the contours to the surface, and from the surface's corners and centroids to the shape of the
+ * contours, where that is known and its normal lies within 45 degrees of the slices. Between slices the distance is
+ * that of the interpolated shape, to first order. */
+void
+PrintContourDistances(const std::string & when, const MeshArrays & mesh, const bone::ContourShape & shape)
+{
+  constexpr double spacing = 0.5; // mm, of points on the contours
+  for (int level = 1; level <= shape.GetLevels(); ++level)
+  {
+    const auto          surface = Surface(mesh, level);
+    const std::string   name = when + ".level" + std::to_string(level);
+    std::vector<double> forth, back;
+    if (surface.empty())
+    {
+      continue;
+    }
+    const bone::TriangleTree tree(surface);
+    for (const auto & sample : shape.SampleContours(level, spacing))
+    {
+      forth.push_back(std::sqrt(tree.FindNearest(sample.place).squaredDistance));
+    }
+    for (const auto & t : surface)
+    {
+      const Vector3 samples[4] = { t[0], t[1], t[2], (t[0] + t[1] + t[2]) / 3.0 };
+      for (const Vector3 & x : samples)
+      {
+        const auto value = shape.Evaluate(level, x);
+        if (value && std::abs(value->gradient.normalized().dot(shape.GetNormal())) < M_SQRT1_2)
+        {
+          back.push_back(std::abs(value->distance) / value->gradient.norm());
+        }
+      }
+    }
+    PrintDistances(name + ".from_contours", forth);
+    PrintDistances(name + ".to_contours", back);
+  }
+}
+
 /** Overlap and distances with a label map. */
 void
 PrintAgreement(const std::string &      when,
@@ -378,6 +436,7 @@ Improve(const std::string & input,
   {
     shape.emplace(*bone::ReadContours(contours));
     parameters.shape = &*shape;
+    PrintContourDistances("before", before, *shape);
   }
   const auto          start = std::chrono::steady_clock::now();
   const std::clock_t  clock = std::clock();
@@ -390,6 +449,10 @@ Improve(const std::string & input,
             << report.splits << "\ncollapses " << report.collapses << '\n';
   bone::WriteMeshArrays(after, output);
   PrintQuality("after", after);
+  if (shape)
+  {
+    PrintContourDistances("after", after, *shape);
+  }
   if (mask.IsNotNull())
   {
     PrintAgreement("after", after, mask, grid);

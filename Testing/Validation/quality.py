@@ -192,6 +192,26 @@ def angles(row):
     return out
 
 
+SURFACES = {1: "boundary", 2: "cortical, trabecular", 3: "trabecular, medullary"}
+
+
+def contour_distances(rows):
+    """Boundary and interfaces against the contours of all slices, as tiled and as made."""
+    out = ["", "## Boundary and interfaces against the contours\n",
+           "Distances in mm (mean, 95 percentile, largest) between each surface and the contours of all slices, periosteal for the",
+           "boundary and endosteal for the interfaces: from points on the contours to the surface, and from the surface's corners and",
+           "centroids to the shape that the contours describe, interpolated between slices, away from caps (where the shape's normal lies",
+           "within 45 degrees of the slices). The latter are of first order and say nothing of the largest, where contours end or part.\n",
+           "| bone | surface | from contours: tiled | made | to contours: tiled | made |", "|---|---|---|---|---|---|"]
+    for name, row in rows:
+        for level, surface in SURFACES.items():
+            if f"after.level{level}.from_contours.mean" in row.values:
+                cells = [f"{row[key + '.mean']:.2f}, {row[key + '.percentile95']:.2f}" + (f", {row[key + '.largest']:.1f}" if way == "from" else "")
+                         for way in ("from", "to") for key in (f"{when}.level{level}.{way}_contours" for when in ("before", "after"))]
+                out.append(f"| {name} | {surface} | {' | '.join(cells)} |")
+    return out
+
+
 def report(rows, methods):
     out = ["# Mesh quality\n", f"{made_by(__file__)}: bones tiled as `bonetk build` does by default, then the quality",
            "stage with its defaults (distance bound: half a pixel, at most 0.3 mm; fitted to the contours of all slices and the label).\n", "## Angles\n",
@@ -219,6 +239,7 @@ def report(rows, methods):
             f"{row['before.roughness_across']:.1f} → {row['after.roughness_across']:.1f} | {row['before.own']:.1f} → {row['after.own']:.1f} | "
             f"{row.excess('before'):.1f} → {row.excess('after'):.1f} | {row['seconds']:.1f} | "
             f"{', '.join(row.failures())} |")
+    out += contour_distances(rows)
     out += ["", "## The paper's Figures 5 to 7: three methods on the clinical hip\n",
             "| method | iterations | volume, % | inverted cells |", "|---|---|---|---|"]
     for line in methods.splitlines():

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <string>
+#include <variant>
 #include <vector>
 
 class vtkUnstructuredGrid;
@@ -56,6 +57,18 @@ WriteDensityMesh(const DensityMesh<TCoordinate> * mesh,
  * it in opposite directions) or has coordinates that are not finite. */
 TriangleSurface
 ReadTriangleSurface(const std::string & path);
+
+/** Values at the points of a surface, of doubles or ints. */
+struct PointArray
+{
+  std::string                                         name;
+  std::variant<std::vector<double>, std::vector<int>> values;
+};
+
+/** Writes the whole surface with its point data, the first array as the active scalars, or none; a .vtp file. Throws
+ * IOError, also where an array has not one value for each point. */
+void
+WriteTriangleSurface(const TriangleSurface & surface, const std::vector<PointArray> & arrays, const std::string & path);
 } // namespace bone
 
 #endif

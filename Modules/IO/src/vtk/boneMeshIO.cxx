@@ -9,16 +9,21 @@
 #include "boneFileName.h"
 #include "boneMeshValidator.h"
 #include "boneRefuse.h"
+#include "boneVtkArrays.h"
 #include "boneVtkFile.h"
 
 #include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkTriangleFilter.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <fstream>
+#include <type_traits>
 
 namespace bone
 {
@@ -208,5 +213,61 @@ ReadTriangleSurface(const std::string & path)
     }
     return surface;
   });
+}
+
+namespace
+{
+vtkSmartPointer<vtkDataArray>
+MakePointArray(const PointArray & array, std::size_t points)
+{
+  return std::visit(
+    [&](const auto & values) -> vtkSmartPointer<vtkDataArray> {
+      using Value = typename std::decay_t<decltype(values)>::value_type;
+      using Array = std::conditional_t<std::is_same_v<Value, int>, vtkIntArray, vtkDoubleArray>;
+      if (values.size() != points)
+      {
+        Refuse("the array '", array.name, "' has ", values.size(), " values for ", points, " points");
+      }
+      return MakeArray<Array>(
+        array.name.c_str(), static_cast<vtkIdType>(points), 1, [&](vtkIdType p, int) { return values[p]; });
+    },
+    array.values);
+}
+
+vtkSmartPointer<vtkPolyData>
+ToPolyData(const TriangleSurface & surface, const std::vector<PointArray> & arrays)
+{
+  const auto        points = static_cast<vtkIdType>(surface.points.size());
+  const auto        triangles = static_cast<vtkIdType>(surface.triangles.size());
+  auto              data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> places;
+  places->SetData(
+    MakeArray<vtkDoubleArray>("Points", points, 3, [&](vtkIdType p, int k) { return surface.points[p][k]; }));
+  data->SetPoints(places);
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(MakeArray<vtkTypeInt64Array>("offsets", triangles + 1, 1, [](vtkIdType t, int) { return 3 * t; }),
+                 MakeArray<vtkTypeInt64Array>("connectivity", 3 * triangles, 1, [&](vtkIdType i, int) {
+                   return surface.triangles[i / 3][i % 3];
+                 }));
+  data->SetPolys(cells);
+  for (const PointArray & array : arrays)
+  {
+    data->GetPointData()->AddArray(MakePointArray(array, surface.points.size()));
+  }
+  if (!arrays.empty())
+  {
+    data->GetPointData()->SetActiveScalars(arrays.front().name.c_str());
+  }
+  return data;
+}
+} // namespace
+
+void
+WriteTriangleSurface(const TriangleSurface & surface, const std::vector<PointArray> & arrays, const std::string & path)
+{
+  RequireExtension(path, { ".vtp" });
+  AtomicFile file(path);
+  NamingFile(path, [&] { WriteVtpFile(ToPolyData(surface, arrays), file); });
+  file.Commit();
 }
 } // namespace bone

@@ -3,14 +3,22 @@
  *=========================================================================*/
 #include "boneCorticalProfile.h"
 
-#include "boneContourTestTools.h"
-
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace bone
 {
 namespace
 {
+// 1 well beyond depth 0, 0 well before, blurred by a Gaussian.
+double
+Blurred(double depth, double blur)
+{
+  return 0.5 * std::erfc(-depth / (blur * std::sqrt(2.0)));
+}
+
 // Soft tissue at 50 HU, cortex of 1300 HU from depth 0 to `thickness`, then `inside` HU, from `marrow` on -50 HU.
 CorticalProfile
 Profile(double thickness, double blur, double inside = 200.0, double marrow = 1e9)
