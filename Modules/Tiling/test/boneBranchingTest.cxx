@@ -150,6 +150,27 @@ TEST(Branching, ACutRunsThroughTheMiddleOfTheSlice)
   EXPECT_FALSE(between(BranchingKind::Filling));
 }
 
+TEST(Branching, ACircleEndsInAFilledSlab)
+{
+  // Vertices lie on a diagonal of the box around the circle, but for rounding.
+  for (const int points : { 40, 48, 56 })
+  {
+    const bone::Vector2     middle(0, 0);
+    const std::vector<Loop> wide{ { middle, 20, 20, 1, 1 }, { middle, 17, 17, 2, 2 } };
+    std::vector<Loop>       tips;
+    for (const double x : { -12.0, 12.0 })
+    {
+      tips.push_back({ { x, 0 }, 6, 10, 1, 1 });
+      tips.push_back({ { x, 0 }, 4, 8, 2, 2 });
+    }
+    for (const Slices & slices : { Slices{ tips, wide }, Slices{ wide, tips }, Slices{ wide, tips, wide } })
+    {
+      const auto stack = bone::MakeStack(slices, 3.0, points);
+      ExpectAsStack(Tile(*stack, BranchingKind::Composite), *stack, std::to_string(points) + " points");
+    }
+  }
+}
+
 TEST(Branching, CompositeIsTheDefaultAndTheKindsDiffer)
 {
   const auto stack = bone::MakeStack(TwoBranches(3.0, false), 3.0, 36);

@@ -31,6 +31,7 @@ constexpr double ShiftGain = 1.5;   ///< a shift leans upright walls too, so it 
 constexpr double LinkShare = 0.15;  ///< of a part's area, by which two parts of a layer belong together
 constexpr double SmallShift = 0.03; // mm
 constexpr int    SmallShifts = 3;
+constexpr double WiderBox = 0.7;          ///< mm, with each small shift where no shift will do
 constexpr int    UsualShifts = 2;         ///< looked at always; others where these do not do
 constexpr double LeastVolume = 1e-11;     ///< mm^3, of a cell that is not thin
 constexpr double SurfaceTolerance = 0.12; ///< of the slab's height
@@ -594,13 +595,27 @@ public:
   }
 
 private:
-  /** Alignments at the shifts that may do, best first. */
+  /** Vertices of a symmetric section may lie on a diagonal of the box but for rounding, or on edges of the other slice:
+   * then other boxes and shifts are tried. */
   void
   FindAlignments()
   {
-    int tried = 0;
-    for (const Vector2 & shift : CandidateShifts(m_Pool, m_Lower, m_Upper, m_Groups))
+    this->FindAlignmentsOfAttempt();
+    while (m_Alignments.empty() && m_Attempt < SmallShifts)
     {
+      ++m_Attempt;
+      this->FindAlignmentsOfAttempt();
+    }
+  }
+
+  /** Alignments at the shifts that may do, best first. */
+  void
+  FindAlignmentsOfAttempt()
+  {
+    int tried = 0;
+    for (const Vector2 & candidate : CandidateShifts(m_Pool, m_Lower, m_Upper, m_Groups))
+    {
+      const Vector2 shift = candidate + m_Attempt * SmallShift * Vector2(0.8, 0.6);
       if (tried++ >= UsualShifts && !m_Alignments.empty() && m_Alignments.front()->separated.empty())
       {
         break;
@@ -622,7 +637,8 @@ private:
     auto alignment = std::make_unique<Alignment>();
     try
     {
-      const SlabBounds bounds = BoundsOf(m_Pool, m_Lower, m_Upper, shift);
+      SlabBounds bounds = BoundsOf(m_Pool, m_Lower, m_Upper, shift);
+      bounds.high += m_Attempt * WiderBox * Vector2(1.0, 0.6);
       alignment->below = MakeSide(m_Pool, m_Lower, m_LowerGroup, bounds, Vector2::Zero());
       alignment->above = MakeSide(m_Pool, m_Upper, m_UpperGroup, bounds, shift);
       auto cuts = m_Split ? FindPieceCuts(m_Pool, m_Lower, m_Upper, m_Groups, shift) : std::vector<PieceCut>{};
@@ -675,6 +691,7 @@ private:
   std::vector<int>                        m_LowerGroup;
   std::vector<int>                        m_UpperGroup;
   int                                     m_Slice;
+  int                                     m_Attempt{ 0 }; ///< at alignments, while there are none
   std::vector<std::unique_ptr<Alignment>> m_Alignments;
   std::set<LayerLink>                     m_Unmoved; ///< that overlap where no slice is moved
   std::optional<SlabFilling>              m_Filling;
