@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "reports.h"
 
+#include "boneCorticalThicknessFilter.h"
 #include "boneDensityCalibrationFilter.h"
 #include "boneDensityFitFilter.h"
 #include "boneDensityImageFilter.h"
@@ -13,6 +14,7 @@ namespace bone::python
 {
 namespace
 {
+using ThicknessType = CorticalThicknessFilter<CTImage, Mesh>;
 using FitType = DensityFitFilter<CTImage, Mesh>;
 using CalibrationType = DensityCalibrationFilter<CTImage, Mesh>;
 using RasterType = DensityImageFilter<Mesh, CTImage>;
@@ -118,11 +120,61 @@ BindPhantom(py::module_ & m)
   AddOutput(
     phantom, "labels", [](PhantomType & self) { return self.GetLabelOutput(); }, "Image, int16: regions.");
 }
+
+template <typename T>
+py::array_t<T>
+ToArray(const std::vector<T> & values)
+{
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::dict
+DescribeMap(const CorticalThicknessMap & map)
+{
+  const std::vector<std::array<IdType, 3>> & triangles = map.surface.triangles;
+  std::vector<int>                           status;
+  for (const CorticalStatus of : map.status)
+  {
+    status.push_back(static_cast<int>(of));
+  }
+  return py::dict(py::arg("points") = FromPoints(map.surface.points),
+                  py::arg("triangles") =
+                    py::array_t<IdType>({ static_cast<py::ssize_t>(triangles.size()), py::ssize_t{ 3 } },
+                                        triangles.empty() ? nullptr : triangles.front().data()),
+                  py::arg("point_ids") = ToArray(map.pointId),
+                  py::arg("thickness") = ToArray(map.thickness),
+                  py::arg("fitted") = ToArray(map.fitted),
+                  py::arg("density") = ToArray(map.density),
+                  py::arg("status") = ToArray(status),
+                  py::arg("cortical_density") = map.corticalDensity);
+}
+
+void
+BindThickness(py::module_ & m)
+{
+  auto thickness = AddFilter<ThicknessType>(
+    m,
+    "CorticalThicknessFilter",
+    "Cortical thickness at the points of a mesh's exterior surface, measured in the CT along the inward normal.\n\n"
+    "Inputs: mesh, of any density or none; image (CT in HU). After an update: map.");
+  AddInput<Mesh>(thickness, "mesh", BONE_PYTHON_INPUT(ThicknessType, Mesh), "DensityMesh.");
+  AddImageInput(thickness, "image", BONE_PYTHON_INPUT(ThicknessType, Image), "CT in HU.");
+  AddParameters(thickness);
+  thickness.def_property_readonly(
+    "map",
+    [](const ThicknessType & self) { return DescribeMap(self.GetMap()); },
+    "After an update: a dict of points (n x 3, mm), triangles (t x 3), point_ids (in the mesh), thickness (mm) and "
+    "fitted "
+    "(mm, before outliers were replaced and it was smoothed), density (HU, of the cortex), status (0 none, 1 found, 2 "
+    "solid, 3 outside; others than found are NaN), and cortical_density (HU, where the cortex is thin).");
+  AddMember(thickness, "map", "dict[str, Any]", true);
+}
 } // namespace
 
 void
 BindDensityFilters(py::module_ & m)
 {
+  BindThickness(m);
   BindFit(m);
   BindCalibration(m);
   BindRaster(m);

@@ -85,6 +85,8 @@ CASES = [
     ("measure", ("bone.vtu",), dict(ball=[(0, 0, -60, 9), (5, 0, -60, 9.5)], half_space=(0, 0, -60, 0, 0, 1), no_page=True,
                                     output="measures.json"),
      "bone.vtu --ball 0 0 -60 9 --ball 5 0 -60 9.5 --half-space 0 0 -60 0 0 1 --no-page -o measures.json"),
+    ("thickness", ("bone.vtu", "ct.mha"), dict(point_spread=4, cortical_density=1500, report="thickness.json", output="t.vtp"),
+     "bone.vtu ct.mha --point-spread 4 --cortical-density 1500 --report thickness.json -o t.vtp"),
     ("plan", ("bone.vtu",), dict(resection=[[0, 0, -60, 0, 0, 1]], path=(0, -40, -60, 0, 40, -60), radius=3, output="plan.json"),
      "bone.vtu --resection 0 0 -60 0 0 1 --path 0 -40 -60 0 40 -60 --radius 3 -o plan.json"),
     ("export", ("bone.vtu",), dict(format="gmsh", law="keller1994", line=(0, 0.001), no_page=True, output="fe.msh"),

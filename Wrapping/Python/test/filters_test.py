@@ -29,7 +29,7 @@ NOT_FILTERS = {
 FILTERS = [
     "SnakeContourFilter", "ContourSliceFilter", "ContourResampleFilter", "MedialAxisFilter", "ContourTilingMeshSource",
     "MeshQualityFilter", "TetraSmoothingFilter", "TetraSwapFilter", "TetraCollapseFilter", "HierarchyLevelFilter",
-    "DensityFitFilter", "DensityCalibrationFilter", "DensityImageFilter", "PhantomImageSource", "DRRImageFilter",
+    "CorticalThicknessFilter", "DensityFitFilter", "DensityCalibrationFilter", "DensityImageFilter", "PhantomImageSource", "DRRImageFilter",
     "DRRDerivativeImageFilter", "DRRAdjointFilter", "VoxelDRRImageFilter", "AttenuationImageFilter",
     "IntensityImageFilter", "NoiseImageFilter", "StatisticalModelEstimator", "AtlasRegistrationFilter",
     "RigidRadiographRegistration", "DeformableRadiographRegistration", "AtlasVolumeRegistration",
@@ -114,6 +114,27 @@ class Pipelines(unittest.TestCase):
         self.f.update()
         x = np.random.default_rng(4).uniform((1, 1, 1), (29, 23, 35), (200, 3))
         np.testing.assert_allclose(self.f.output.evaluate(x), 100 + x @ [3, -2, 5], rtol=1e-4)
+
+    def test_thickness_of_a_rod(self):
+        x, y, z = np.meshgrid(np.arange(40.0), np.arange(40.0), np.arange(40.0), indexing="ij")
+        depth = np.clip(14.5 - np.hypot(x - 19.5, y - 19.5), -0.5, 4.5)
+        values = np.where(depth < 4, np.clip(depth + 0.5, 0, 1), np.clip(4.5 - depth, 0, 1)) * 1400 + np.where(depth > 4, 200, 0)
+        ct = bonetk.Image(values.transpose(2, 1, 0).astype(np.float32))
+        mask = (np.hypot(x - 19.5, y - 19.5) < 14.5) & (z > 3) & (z < 36)
+        labels = bonetk.Image(mask.transpose(2, 1, 0).astype(np.int16))
+        f = bonetk.CorticalThicknessFilter()
+        f.mesh = bonetk.build(ct, labels, tetrahedra=2000)[0]
+        f.image = ct
+        f.point_spread = 1.0
+        f.cortical_density = 1400
+        f.update()
+        found = f.map["status"] == 1
+        self.assertEqual(f.map["points"].shape, (len(found), 3))
+        self.assertLess(f.map["triangles"].max(), len(found))
+        np.testing.assert_array_equal(np.isnan(f.map["thickness"]), ~found)
+        middle = found & (np.abs(f.map["points"][:, 2] - 19.5) < 10)
+        self.assertGreater(middle.sum(), 50)
+        self.assertAlmostEqual(np.median(f.map["thickness"][middle]), 4.0, delta=0.4)
 
     def test_runs_only_where_something_changed(self):
         runs = []
