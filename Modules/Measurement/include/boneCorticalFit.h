@@ -20,7 +20,7 @@ struct CorticalSample
 enum class CorticalStatus : int
 {
   None = 0,   ///< no layer near the surface that is denser than what lies on either side
-  Found = 1,  ///<
+  Found = 1,  ///< thickness and density are known
   Solid = 2,  ///< as dense as cortex as far in as there are samples
   Outside = 3 ///< too few samples: the image or the bone ends there
 };

@@ -21,8 +21,8 @@ constexpr double      GapReach = 1.0;         // mm: how deep below the surface 
 constexpr double      LeastThickness = 0.02;  // mm: less is none
 constexpr double      LargestBlur = 3.0;      // pixels
 constexpr double      LargestResidual = 0.25; // of the step at the periosteal edge
-constexpr std::size_t LeastSamples = 12;      //
-constexpr std::size_t LeastOutside = 3;       // samples on the outer side of the surface
+constexpr std::size_t LeastSamples = 12;
+constexpr std::size_t LeastOutside = 3; // samples on the outer side of the surface
 
 double
 Normal(double x)

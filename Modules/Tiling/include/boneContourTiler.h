@@ -32,7 +32,7 @@ struct TilingGuide
  *    meet at the slice share these triangles (continuity between slices).
  * 2. Pieces of neighbouring slices are matched by overlap and distance; several pieces against one are joined by
  *    bridges into a composite contour, or the one is split into parts, or the slab is filled (TilingGuide::branching);
- * a layer that is missing on one side collapses onto the next contour inward.
+ *    a layer that is missing on one side collapses onto the next contour inward.
  * 3. Each pair is knitted from the inside out: the wall between the medial axes first, then ring after ring, the wall
  *    between two layers being tiled once and prescribed to the ring outside it (continuity between layers).
  * 4. Ends are closed by a ridge above the medial axis; where the bone leaves the image they are cut flat.

@@ -121,13 +121,6 @@ BindPhantom(py::module_ & m)
     phantom, "labels", [](PhantomType & self) { return self.GetLabelOutput(); }, "Image, int16: regions.");
 }
 
-template <typename T>
-py::array_t<T>
-ToArray(const std::vector<T> & values)
-{
-  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
 py::dict
 DescribeMap(const CorticalThicknessMap & map)
 {
@@ -141,11 +134,11 @@ DescribeMap(const CorticalThicknessMap & map)
                   py::arg("triangles") =
                     py::array_t<IdType>({ static_cast<py::ssize_t>(triangles.size()), py::ssize_t{ 3 } },
                                         triangles.empty() ? nullptr : triangles.front().data()),
-                  py::arg("point_ids") = ToArray(map.pointId),
-                  py::arg("thickness") = ToArray(map.thickness),
-                  py::arg("fitted") = ToArray(map.fitted),
-                  py::arg("density") = ToArray(map.density),
-                  py::arg("status") = ToArray(status),
+                  py::arg("point_ids") = Copy(map.pointId),
+                  py::arg("thickness") = Copy(map.thickness),
+                  py::arg("fitted") = Copy(map.fitted),
+                  py::arg("density") = Copy(map.density),
+                  py::arg("status") = Copy(status),
                   py::arg("cortical_density") = map.corticalDensity);
 }
 

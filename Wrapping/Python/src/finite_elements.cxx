@@ -27,13 +27,6 @@ DescribeElasticity(const ElasticityLaw & law)
                   py::arg("source") = law.source);
 }
 
-template <typename T>
-py::array_t<T>
-Copy(const std::vector<T> & values)
-{
-  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
 py::dict
 DescribeSets(const std::vector<FiniteElementSet> & sets)
 {

@@ -78,6 +78,14 @@ View(const T * data, std::vector<py::ssize_t> shape, const py::object & owner)
   return std::move(array);
 }
 
+/** A copy. */
+template <typename T>
+py::array_t<T>
+Copy(const std::vector<T> & values)
+{
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
 /** n x 3 numbers as points, and back as a copy. Throws UsageFailure for another shape. */
 std::vector<Vector3>
 ToPoints(const Array<double> & array, const char * name);
