@@ -31,6 +31,10 @@ def faults(pages, scripts):
             yield f"{made[1]} writes no line of report.py"
 
 
+LIST = ("| page | command |\n|---|---|\n| [one](one.md) | `one.sh $build` | 1 min |\n"
+        "| [two](two.md) | `NUMBER=2 two.sh \"a b\"` | 2 h |\n")
+
+
 class Reports(TestCase):
     def copy(self):
         """The pages and scripts, to be changed."""
@@ -61,8 +65,7 @@ class Reports(TestCase):
 
     def test_all_by_one_command(self):
         pages, scripts = self.copy()
-        (pages / "README.md").write_text("| page | command |\n|---|---|\n| [one](one.md) | `one.sh $build` | 1 min |\n"
-                                         "| [two](two.md) | `NUMBER=2 two.sh \"a b\"` | 2 h |\n")
+        (pages / "README.md").write_text(LIST)
         (scripts / "one.sh").write_text('#!/bin/sh\necho "one $1" >> "$OUT"; exit 3\n')
         (scripts / "two.sh").write_text('#!/bin/sh\necho "two $NUMBER $1" >> "$OUT"\n')
         for name in ("one.sh", "two.sh"):
@@ -76,6 +79,38 @@ class Reports(TestCase):
         code, _, err = run(scripts / "run.sh", "three", env=environment)
         self.assertEqual(code, 2)
         self.assertIn("there is no report three", err)
+
+    def test_those_of_other_programs_alone(self):
+        pages, scripts = self.copy()
+        (pages / "README.md").write_text(LIST)
+        for script in ("one.sh", "two.sh"):
+            page = pages.absolute() / script.replace(".sh", ".md")
+            (scripts / script).write_text(f'#!/bin/sh\n(echo "# Page"; echo; "{scripts}/report.py" {script}) > {page}\n')
+            (scripts / script).chmod(0o755)
+        os.makedirs("Modules/Some/test")
+        os.mkdir("build")
+        environment = dict(os.environ, BONETK_DATA=".", BONETK_BUILD="build", BONETK_WORK="work")
+
+        def committed(file):
+            pathlib.Path(file).write_text(f"{file} {len(file)}\n")
+            for arguments in (("init", "--quiet"), ("add", "Modules"), ("commit", "--quiet", "--message", file)):
+                self.assertEqual(run("git", "-c", "user.name=a", "-c", "user.email=b@c", *arguments)[0], 0)
+
+        def made():
+            code, out, err = run(scripts / "run.sh", "--stale", env=environment)
+            self.assertEqual((code, err), (0, ""))
+            return [line.split()[1].rstrip(":") for line in out.splitlines() if line.endswith(" s")]
+
+        committed("Modules/a.cxx")
+        self.assertEqual(made(), ["one", "two"])
+        self.assertEqual(made(), [])
+        committed("Modules/README.md")
+        committed("Modules/Some/test/b.cxx")
+        (pages / "two.md").unlink()
+        self.assertEqual(made(), ["two"])
+        committed("Modules/c.cxx")
+        self.assertEqual(made(), ["one", "two"])
+        self.assertEqual(len(os.listdir("work")), 2)
 
 
 if __name__ == "__main__":

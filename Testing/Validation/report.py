@@ -2,7 +2,8 @@
 """The line that every report begins with: by which script, at which commit and on which machine it was made.
 
     from report import made_by          made_by(__file__)
-    Testing/Validation/report.py NAME   prints it, for scripts of the shell"""
+    Testing/Validation/report.py NAME   prints it, for scripts of the shell
+    Testing/Validation/report.py        the commit alone"""
 import os
 import pathlib
 import platform
@@ -10,14 +11,18 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+# What the programs are made of: reports that name one commit measure the same programs, whatever tests and pages came after it.
+PROGRAMS = ("CMake", "CMakeLists.txt", "Modules", "Apps", "Testing/Validation/*.cxx", "Testing/Validation/*.h",
+            ":(exclude)Modules/*/test/*", ":(exclude)*.md")
 
 
 def commit():
-    """That of the sources, and whether they differ from it."""
+    """The last that changed the programs measured, and whether they differ from it now."""
     git = ["git", "-C", ROOT]
-    head = subprocess.run([*git, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-    changed = subprocess.run([*git, "diff", "--quiet", "HEAD", "--", "Modules", "Apps", "Testing"]).returncode != 0
-    return head + (" with changes" if changed else "")
+    last = subprocess.run([*git, "log", "-1", "--format=%h", "--abbrev=7", "HEAD", "--", *PROGRAMS], capture_output=True, text=True,
+                          check=True).stdout.strip()
+    changed = subprocess.run([*git, "diff", "--quiet", "HEAD", "--", *PROGRAMS]).returncode != 0
+    return last + (" with changes" if changed else "")
 
 
 def machine():
@@ -36,4 +41,4 @@ def made_by(script):
 
 
 if __name__ == "__main__":
-    print(made_by(sys.argv[1]))
+    print(made_by(sys.argv[1]) if len(sys.argv) > 1 else COMMIT)

@@ -2,10 +2,12 @@
 # Makes the reports of Documentation/validation again, each by the command that the table in its README.md names:
 #
 #   BONETK_DATA=DATA Testing/Validation/run.sh [REPORT...]     default: all
+#   BONETK_DATA=DATA Testing/Validation/run.sh --stale         those that are not of the programs as they are
 #   Testing/Validation/run.sh --list                           the commands alone
 #
 # Builds the preset test first (BONETK_BUILD: takes that build tree as it is). Goes on after a report that fails, names those at
 # the end, and ends with 1 then. BONETK_CHECK names an independent checker of meshes, called as PROGRAM MESH.vtu.
+# Models that several reports measure are made once: in the folder BONETK_WORK, which keeps them by commit, or in a temporary one.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # "| [atlas](atlas.md) | `atlas.py $build` | 20 min |" to "atlas<tab>atlas.py $build"
@@ -13,6 +15,15 @@ reports=$(sed -n 's/^| \[\(.*\)\](\1\.md) | `\(.*\)` | .* |$/\1\t\2/p' "$root/Do
 if [ "${1:-}" = --list ]; then
   echo "$reports"
   exit
+fi
+if [ "${1:-}" = --stale ]; then
+  commit=$("$root/Testing/Validation/report.py")
+  set --
+  while IFS=$'\t' read -r report _; do
+    grep -q "^Made by .* at commit $commit on " "$root/Documentation/validation/$report.md" 2> /dev/null || set -- "$@" "$report"
+  done <<< "$reports"
+  echo "== not of commit $commit: ${*:-none}"
+  [ $# -gt 0 ] || exit 0
 fi
 [ $# -gt 0 ] || mapfile -t all < <(cut -f 1 <<< "$reports")
 [ $# -gt 0 ] || set -- "${all[@]}"
@@ -30,6 +41,14 @@ check=${BONETK_CHECK:+--check $BONETK_CHECK}
 [ -z "$check" ] || export CHECK=$BONETK_CHECK
 # Debian's Python, which sees Debian's numpy and VTK.
 export BONETK=$build/Apps/bonetk/bonetk build programs check PATH=$root/Testing/Validation:/usr/bin:$PATH
+if [ -n "${BONETK_WORK:-}" ]; then
+  work=$BONETK_WORK/$("$root/Testing/Validation/report.py" | tr ' ' _)
+else
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+fi
+export FEMORA=$work/femora MODELS=$work/models
+mkdir -p "$FEMORA" "$MODELS"
 failed=()
 for report in "$@"; do
   command=$(sed -n "s/^$report\t//p" <<< "$reports")
