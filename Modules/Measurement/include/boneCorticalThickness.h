@@ -29,6 +29,12 @@ struct CTBlur
   /** Along a unit vector. */
   double
   Along(const Vector3 & direction) const;
+
+  bool
+  operator==(const CTBlur & other) const
+  {
+    return inPlane == other.inPlane && across == other.across && axis == other.axis;
+  }
 };
 
 /** Cortical thickness at the points of a surface. */
@@ -45,11 +51,13 @@ struct CorticalThicknessMap
   std::size_t                 thickPoints{ 0 };       ///< where the density, and the blur, were fitted
   std::size_t                 outliers{ 0 };          ///< replaced by the median of their neighbours
 
+  /** Maps with points that have no result are not equal, as NaN is not. */
   bool
   operator==(const CorticalThicknessMap & other) const
   {
     return surface == other.surface && pointId == other.pointId && thickness == other.thickness &&
-           density == other.density && status == other.status;
+           fitted == other.fitted && density == other.density && status == other.status && blur == other.blur &&
+           corticalDensity == other.corticalDensity;
   }
   bool
   operator!=(const CorticalThicknessMap & other) const

@@ -111,14 +111,16 @@ public:
   Run()
   {
     const auto free = this->FitAll(0.5, [](std::size_t, CorticalFitRules &) {});
-    this->EstimateBlur(free);
+    const auto thick = this->FindThick(free);
+    m_Map.thickPoints = thick.size();
+    this->EstimateBlur(free, thick);
     std::vector<char> dense(free.size(), 0);
-    for (const std::size_t p : this->FindThick(free))
+    for (const std::size_t p : thick)
     {
       dense[p] = 1;
     }
     const bool given = m_Parameters.corticalDensity > 0.0;
-    m_Map.corticalDensity = given ? m_Parameters.corticalDensity : this->MedianDensity(free);
+    m_Map.corticalDensity = given ? m_Parameters.corticalDensity : this->MedianDensity(free, thick);
     const auto fits = this->FitAll(0.75, [&](std::size_t p, CorticalFitRules & rules) {
       rules.blur = m_Map.blur.Along(m_Normals[p]);
       if (dense[p] == 0 || !IsThick(free[p], rules.blur))
@@ -191,9 +193,8 @@ private:
   }
 
   double
-  MedianDensity(const std::vector<CorticalFit> & fits) const
+  MedianDensity(const std::vector<CorticalFit> & fits, const std::vector<std::size_t> & thick) const
   {
-    const auto          thick = this->FindThick(fits);
     std::vector<double> densities;
     this->RequireThick(thick.size(), "its density", "CorticalDensity");
     for (const std::size_t p : thick)
@@ -204,10 +205,8 @@ private:
   }
 
   void
-  EstimateBlur(const std::vector<CorticalFit> & fits)
+  EstimateBlur(const std::vector<CorticalFit> & fits, const std::vector<std::size_t> & thick)
   {
-    const auto thick = this->FindThick(fits);
-    m_Map.thickPoints = thick.size();
     if (m_Parameters.pointSpread > 0.0)
     {
       m_Map.blur.inPlane = m_Map.blur.across = m_Parameters.pointSpread / FullWidth;
