@@ -26,10 +26,15 @@ def commit():
 
 
 def machine():
-    """Processor and number of threads."""
+    """Processor, what tells its generation and the width of its vectors, and number of threads."""
     with open("/proc/cpuinfo") as file:
-        models = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
-    return f"{models[0] if models else platform.machine()}, {os.cpu_count()} processors"
+        lines = [line.partition(":")[::2] for line in file.read().split("\n\n")[0].splitlines()]
+    about = {name.strip(): value.strip() for name, value in lines}
+    if "model name" not in about:
+        return f"{platform.machine()}, {os.cpu_count()} processors"
+    flags = about.get("flags", "").split()
+    vectors = next((name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags), "no AVX2")
+    return f"{about['model name']} (family {about['cpu family']}, model {about['model']}, {vectors}), {os.cpu_count()} processors"
 
 
 COMMIT = commit()  # when the script begins: it may run for hours
