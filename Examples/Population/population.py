@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""What becomes of each subject: its build, what came of it, and the table of those that failed.
+"""What becomes of each subject: its model, that on the standard's topology, and the table of those that failed.
 
-    population.py build   SUBJECTS.csv NAME|NUMBER --results FOLDER [--attempt N] [--attempts N] [--again] -- BONETK OPTIONS
-    population.py collect SUBJECTS.csv             --results FOLDER [--level N]
+    population.py build    SUBJECTS.csv NAME|NUMBER --results FOLDER [--attempt N] [--attempts N] [--again] -- BONETK OPTIONS
+    population.py standard SUBJECTS.csv             --results FOLDER [--level N]
+    population.py register SUBJECTS.csv NAME|NUMBER --results FOLDER [--level N] [--attempt ...] -- BONETK OPTIONS
+    population.py collect  SUBJECTS.csv             --results FOLDER
 
 `build` runs `BONETK build` for one subject, named, or the table's first, second, … It writes FOLDER/outcomes/NAME.csv and
 ends with 0 once nothing more is to be tried: the model is there, or the data (exit code 1) or the options (2) are bad, or
 `--attempts` were made. Otherwise (no space, no memory, a kill, no program) it ends with the build's exit code: try again.
+`standard` makes FOLDER/standard.vtu, a copy of the table's first model, where there is none; `register`, once all builds are
+through, does so too, and then runs `BONETK register subject` likewise, which writes FOLDER/registrations/NAME.csv.
 `collect` writes FOLDER/failures.csv, and FOLDER/subjects.txt for `bonetk train`.
 """
 import argparse
@@ -16,6 +20,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -67,10 +72,14 @@ def reason(code, status, log):
     return lines[-1].removeprefix("bonetk build: ") if lines else f"exit code {code} without an error"
 
 
-def paths(results, name):
-    """Outcome, status, log and model folder of a subject."""
-    return [os.path.join(results, *parts) for parts in (("outcomes", name + ".csv"), ("status", name + ".jsonl"),
-                                                         ("logs", name + ".txt"), ("models", name))]
+def paths(results, name, what="build"):
+    """Of a subject's build, or of its registration: outcome, status, log, and the folder or file that it makes."""
+    if what == "build":
+        parts = (("outcomes", name + ".csv"), ("status", name + ".jsonl"), ("logs", name + ".txt"), ("models", name))
+    else:
+        parts = (("registrations", name + ".csv"), ("status", name + ".registration.jsonl"),
+                 ("logs", name + ".registration.txt"), ("registered", name + ".vtu"))
+    return [os.path.join(results, *part) for part in parts]
 
 
 def write(path, text):
@@ -87,20 +96,17 @@ def write_rows(path, rows):
     write(path, table.getvalue())
 
 
-def build(row, options):
-    """One attempt; returns the exit code, 0 also for an outcome that is final."""
-    outcome, status, log, model = paths(options.results, row["subject"])
-    if os.path.exists(outcome) and not options.again:
-        return 0
-    for path in (outcome, status, log, model):
+def run(row, options, arguments):
+    """One attempt at a build or a registration; returns the exit code, 0 also for an outcome that is final."""
+    outcome, status, log, made = paths(options.results, row["subject"], options.what)
+    for path in (outcome, status, log, made):
         os.makedirs(os.path.dirname(path), exist_ok=True)
     code = None  # of an attempt that took all of its job along
     if options.attempt <= options.attempts:
         if os.path.exists(status):
             os.remove(status)
         program, *others = options.command
-        command = [program, "build", row["ct"], "--labels", row["labels"], *others, "-o", model, "--status", status]
-        command += ["--label", row["label"]] if row.get("label") else []
+        command = [program, *arguments, *others, "-o", made, "--status", status]
         with open(log, "w", encoding="utf-8") as file:
             try:
                 code = subprocess.run(command, stdout=file, stderr=file, check=False).returncode
@@ -112,27 +118,63 @@ def build(row, options):
         print(f"{row['subject']}: {reason(code, last_status(status), log)}: try again", file=sys.stderr)
         return code or 1
     why = "" if code == 0 else reason(code, last_status(status), log)
+    why = f"registration: {why}" if why and options.what == "register" else why
     write_rows(outcome, [[row["subject"], "" if code is None else code, why]])
     return 0
 
 
+def build(row, options):
+    registration = paths(options.results, row["subject"], "register")[0]
+    if os.path.exists(registration):  # of an earlier model
+        os.remove(registration)
+    label = ["--label", row["label"]] if row.get("label") else []
+    return run(row, options, ["build", row["ct"], "--labels", row["labels"], *label])
+
+
+def result(results, name, what):
+    """What came of a subject's build or registration: name, exit code and reason."""
+    outcome, status, _, _ = paths(results, name, what)
+    if not os.path.exists(outcome):
+        return [name, "", reason(None, last_status(status), None)]
+    with open(outcome, newline="", encoding="utf-8") as file:
+        return next(csv.reader(file))
+
+
+def model(options, name):
+    return os.path.join(paths(options.results, name)[-1], f"model_L{options.level}.vtu")
+
+
+def standard(subjects, options):
+    """The standard model. It stays when subjects come, so that all registered models have its topology."""
+    path = os.path.join(options.results, "standard.vtu")
+    first = next((name for name in subjects if result(options.results, name, "build")[1] == "0"), None)
+    if first and not os.path.exists(path):
+        part = f"{path}.{os.getpid()}.part"  # other jobs may do the same
+        shutil.copyfile(model(options, first), part)
+        os.replace(part, path)
+    return path
+
+
+def register(subjects, row, options):
+    built = result(options.results, row["subject"], "build")
+    if built[1] != "0":
+        write_rows(paths(options.results, row["subject"], "register")[0], [built])
+        return 0
+    return run(row, options, ["register", "subject", standard(subjects, options), model(options, row["subject"]), "--ct", row["ct"]])
+
+
 def collect(subjects, options):
-    """The table of failures, and the list for the atlas, which names each subject's model and CT."""
+    """The table of failures, and the list for the atlas."""
     failures, used, models = [], [], hashlib.sha256()
-    for name, row in subjects.items():
-        outcome, status, _, model = paths(options.results, name)
-        if os.path.exists(outcome):
-            with open(outcome, newline="", encoding="utf-8") as file:
-                result = next(csv.reader(file))
-        else:
-            result = [name, "", reason(None, last_status(status), None)]
-        if result[1] != "0":
-            failures.append(result)
+    for name in subjects:
+        found = result(options.results, name, "register")
+        if found[1] != "0":
+            failures.append(found)
             continue
-        mesh = os.path.join(model, f"model_L{options.level}.vtu")
+        mesh = paths(options.results, name, "register")[-1]
         with open(mesh, "rb") as file:
             models.update(file.read())
-        used.append(f"{os.path.relpath(mesh, options.results)}, {os.path.abspath(row['ct'])}")
+        used.append(os.path.relpath(mesh, options.results))
     write_rows(os.path.join(options.results, "failures.csv"), [["subject", "exit", "reason"], *failures])
     # With the checksum the list changes when a model does, so that the atlas is made anew.
     write(os.path.join(options.results, "subjects.txt"), "\n".join([f"# models {models.hexdigest()}", *used, ""]))
@@ -142,10 +184,10 @@ def collect(subjects, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True, dest="what")
-    for what in ("build", "collect"):
+    for what in ("build", "standard", "register", "collect"):
         command = commands.add_parser(what)
         command.add_argument("subjects")
-        if what == "build":
+        if what in ("build", "register"):
             command.add_argument("subject")
             command.add_argument("--attempt", type=int, default=1)
             command.add_argument("--attempts", type=int, default=3)
@@ -157,11 +199,17 @@ def main():
     subjects = read_subjects(options.subjects)
     if options.what == "collect":
         return collect(subjects, options)
-    if options.subject in subjects:
-        return build(subjects[options.subject], options)
-    if not options.subject.isdecimal() or not 1 <= int(options.subject) <= len(subjects):
-        sys.exit(f"{options.subjects}: there is no subject {options.subject}")
-    return build(list(subjects.values())[int(options.subject) - 1], options)
+    if options.what == "standard":
+        standard(subjects, options)
+        return 0
+    row = subjects.get(options.subject)
+    if row is None:
+        if not options.subject.isdecimal() or not 1 <= int(options.subject) <= len(subjects):
+            sys.exit(f"{options.subjects}: there is no subject {options.subject}")
+        row = list(subjects.values())[int(options.subject) - 1]
+    if os.path.exists(paths(options.results, row["subject"], options.what)[0]) and not options.again:
+        return 0
+    return build(row, options) if options.what == "build" else register(subjects, row, options)
 
 
 if __name__ == "__main__":

@@ -9,12 +9,16 @@ from bonetk_testing import BONETK, TestCase, main, phantom, read_json, run
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Population")
 BUILD = "--tetrahedra 1500 --levels 0.5 --degree 1 --no-page"
-TRAIN = "--degree 1 --no-page"
+REGISTER = "--degree 1"
+TRAIN = "--no-page"
 
-# In place of bonetk: notes each call; kills the first build of s1 and every one of oom; the first of s2 finds a full disk.
+# In place of bonetk: notes each call; kills the first build of s1, every one of oom, and the first registration of s2; the first
+# build of s2 finds a full disk; the standard of `bad` is not there.
 WORKER = f"""#!/bin/sh
 echo "$*" >> calls.txt
 case "$*" in
+  *registered/s2*) mkdir killed2 2> /dev/null && kill -9 $$ ;;
+  *registered/bad*) for last; do :; done; exec {BONETK} register subject gone.vtu "$4" -o r.vtu --status "$last" ;;
   *models/s1*) mkdir killed 2> /dev/null && kill -9 $$ ;;
   *models/s2*) mkdir full 2> /dev/null && exit 3 ;;
   *models/oom*) kill -9 $$ ;;
@@ -25,6 +29,11 @@ FAILURES = [["subject", "exit", "reason"],
             ["other_label", "1", "l0.nii.gz: The label map has no label 7"],
             ["no_ct", "1", "gone.nii.gz: there is no such file"],
             ["oom", "137", "killed by signal 9 in the stage start"]]
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
 
 
 class Population(TestCase):
@@ -47,15 +56,16 @@ class Population(TestCase):
             csv.writer(file).writerows(self.rows)
 
     def calls(self):
-        """The subjects of the builds since the last call, sorted, and how many atlases were trained."""
+        """The subjects of the builds since the last call, of the registrations, sorted, and how many atlases were trained."""
         if not os.path.exists("calls.txt"):
-            return [], 0
+            return [], [], 0
         with open("calls.txt") as file:
             calls = [line.split() for line in file]
         os.remove("calls.txt")
-        builds = [os.path.basename(call[call.index("-o") + 1]) for call in calls if call[0] == "build"]
-        self.assertEqual(len(builds) + sum(call[0] == "train" for call in calls), len(calls))
-        return sorted(builds), len(calls) - len(builds)
+        made = {what: sorted(os.path.basename(call[call.index("-o") + 1]) for call in calls if call[0] == what)
+                for what in ("build", "register", "train")}
+        self.assertEqual(sum(map(len, made.values())), len(calls))
+        return made["build"], made["register"], len(made["train"])
 
     def check(self, results, subjects):
         """The table of failures and, in the atlas, the others."""
@@ -68,53 +78,82 @@ class Population(TestCase):
         used = sum(subject["used"] for subject in read_json(f"{results}/atlas.json")["subjects"])
         self.assertRegex(self.succeed("info", f"{results}/atlas.h5")[0], rf"\nsubjects +{used}\n")
 
-    def array(self):
-        """What Slurm runs: a task a subject, requeued or not, and what follows them."""
-        environment = dict(os.environ, BONETK="./bonetk")
+    def array(self, step, options):
+        """What Slurm runs: a task a subject, requeued or not."""
+        environment = dict(os.environ, BONETK="./bonetk", BONETK_OPTIONS=options)
         for task in range(1, len(self.rows)):
-            code, out, err = run("bash", f"{FOLDER}/build_array.sbatch", "subjects.csv", "array",
-                                 env=dict(environment, SLURM_ARRAY_TASK_ID=str(task), BONETK_OPTIONS=BUILD))
+            code, out, err = run("bash", f"{FOLDER}/array.sbatch", step, "subjects.csv", "array",
+                                 env=dict(environment, SLURM_ARRAY_TASK_ID=str(task)))
             self.assertEqual(code, 0, out + err)
+
+    def train(self):
+        code, out, err = run("bash", f"{FOLDER}/train_after.sbatch", "subjects.csv", "array",
+                             env=dict(os.environ, BONETK="./bonetk", BONETK_OPTIONS=TRAIN))
+        self.assertEqual(code, 0, out + err)
 
     def test_array(self):
         # A task that was requeued so often that no attempt is left says where the last one was.
         requeued = dict(os.environ, SLURM_ARRAY_TASK_ID="3", SLURM_RESTART_COUNT="3", BONETK="./bonetk")
-        self.assertEqual(run("bash", f"{FOLDER}/build_array.sbatch", env=requeued)[0], 0)
-        self.assertEqual(self.calls(), ([], 0))
+        self.assertEqual(run("bash", f"{FOLDER}/array.sbatch", "build", env=requeued)[0], 0)
+        self.assertEqual(self.calls(), ([], [], 0))
         with open("results/outcomes/oom.csv") as file:
             self.assertEqual(file.read(), "oom,,no end in the stage start\n")
 
-        self.array()
-        self.assertEqual(self.calls(), (["no_ct", "oom", "oom", "oom", "other_label", "s0", "s1", "s1", "s2", "s2"], 0))
-        self.array()  # as Slurm may: nothing is done twice
-        self.assertEqual(self.calls(), ([], 0))
-        code, out, err = run("bash", f"{FOLDER}/train_after.sbatch", "subjects.csv", "array",
-                             env=dict(os.environ, BONETK="./bonetk", BONETK_OPTIONS=TRAIN))
-        self.assertEqual(code, 0, out + err)
+        self.array("build", BUILD)
+        self.assertEqual(self.calls(), (["no_ct", "oom", "oom", "oom", "other_label", "s0", "s1", "s1", "s2", "s2"], [], 0))
+        self.array("build", BUILD)  # as Slurm may: nothing is done twice
+        self.assertEqual(self.calls(), ([], [], 0))
+        self.array("register", REGISTER)
+        self.assertEqual(self.calls(), ([], ["s0.vtu", "s1.vtu", "s2.vtu", "s2.vtu"], 0))
+        self.array("register", REGISTER)
+        self.assertEqual(self.calls(), ([], [], 0))
+        self.train()
         self.check("array", ["s0", "s1", "s2"])
+
+        # A subject that is built anew is registered anew, to the same standard.
+        self.calls()
+        standard = read("array/standard.vtu")
+        os.remove("array/outcomes/s0.csv")
+        self.array("build", BUILD + " --force")
+        self.array("register", REGISTER)
+        self.assertEqual(self.calls(), (["s0"], ["s0.vtu"], 0))
+        self.assertEqual(read("array/standard.vtu"), standard)
+
+    def test_registration_that_fails(self):
+        self.rows = self.rows[:1] + [["bad", "ct0.nii.gz", "l0.nii.gz", ""]] + self.rows[4:]
+        self.add(3)
+        self.array("build", BUILD)
+        self.array("register", REGISTER)
+        self.train()
+        with open("array/failures.csv", newline="") as file:
+            failures = list(csv.reader(file))
+        self.assertEqual([row[:2] for row in failures], [["subject", "exit"], ["bad", "1"]])
+        self.assertRegex(failures[1][2], r"^registration: gone\.vtu")
+        self.assertEqual([subject["name"] for subject in read_json("array/atlas.json")["subjects"]], ["s0", "s1", "s2", "s3"])
 
     def snakemake(self, *options):
         code, out, err = run("snakemake", "--snakefile", f"{FOLDER}/Snakefile", "--cores", 2, *options, "--config",
-                             "bonetk=./bonetk", f"build={BUILD}", f"train={TRAIN}", env=dict(os.environ, HOME=os.getcwd()))
+                             "bonetk=./bonetk", f"build={BUILD}", f"register={REGISTER}", f"train={TRAIN}", env=dict(os.environ, HOME=os.getcwd()))
         self.assertEqual(code, 0, out + err)
         return out + err
 
     @unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
     def test_snakemake(self):
         self.snakemake()
-        self.assertEqual(self.calls(), (["no_ct", "oom", "oom", "oom", "other_label", "s0", "s1", "s1", "s2", "s2"], 1))
+        self.assertEqual(self.calls(), (["no_ct", "oom", "oom", "oom", "other_label", "s0", "s1", "s1", "s2", "s2"],
+                                        ["s0.vtu", "s1.vtu", "s2.vtu", "s2.vtu"], 1))
         self.check("results", ["s0", "s1", "s2"])
         self.assertIn("Nothing to be done", self.snakemake())
-        self.assertEqual(self.calls(), ([], 0))
+        self.assertEqual(self.calls(), ([], [], 0))
 
         self.add(3)
         self.snakemake()
-        self.assertEqual(self.calls(), (["s3"], 1))
+        self.assertEqual(self.calls(), (["s3"], ["s3.vtu"], 1))
         self.check("results", ["s0", "s1", "s2", "s3"])
 
         shutil.copy("ct0.nii.gz", "gone.nii.gz")  # a file that was missing has come
         self.snakemake("results/outcomes/no_ct.csv")
-        self.assertEqual(self.calls(), (["no_ct"], 0))
+        self.assertEqual(self.calls(), (["no_ct"], [], 0))
 
     def test_table(self):
         def refused(text, says):

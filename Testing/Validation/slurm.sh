@@ -155,11 +155,11 @@ chmod +x "$work/bonetk"
 # Slices and points are given, which takes half of the time that finding them for 2,000 cells does.
 export BONETK="$work/bonetk" POPULATION=$population NOTES=$work/notes
 build="--slice-step 15 --contour-spacing 30 --levels 0.5 --degree 1 --no-page"
-train="--degree 1 --no-page"
+register="--degree 1"
+train="--no-page"
 count() { [ -e "$NOTES/$1" ] && wc -l < "$NOTES/$1" || echo 0; }
-submit() { # folder, tasks
-  (cd "$work" && BONETK_OPTIONS=$build sbatch --parsable --mem 500 --array "$2" "$population/build_array.sbatch" \
-    subjects.csv "$1")
+submit() { # step, its options, tasks
+  (cd "$work" && BONETK_OPTIONS=$2 sbatch --parsable --mem 500 --array "$3" "$population/array.sbatch" "$1" subjects.csv slurm)
 }
 through() { # waits for a job
   while [ -n "$(squeue --noheader --jobs "$1" 2> /dev/null)" ]; do
@@ -168,7 +168,7 @@ through() { # waits for a job
   done
 }
 
-job=$(submit slurm "1-$subjects")
+job=$(submit build "$build" "1-$subjects")
 until [ "$(count finished)" -ge 2 ]; do
   [ -n "$(squeue --noheader --jobs "$job")" ] || fail "the array has ended early"
   sleep 0.1
@@ -199,14 +199,16 @@ made() { (cd "$work/slurm/models" && stat --format '%n %Y %Z %s' ./*/* | sort); 
 before=$(made)
 step=$((subjects / 20 + 1))
 some=1-$subjects:$step
-through "$(submit slurm "$some")"
+through "$(submit build "$build" "$some")"
 [ "$(count begun)" -le $((subjects + 2)) ] || fail "a second array builds"
 lap "some twenty of the array again"
 for ((subject = 0; subject < subjects; subject += step)); do rm "$work/slurm/outcomes/s$subject.csv"; done
-through "$(submit slurm "$some")"
+through "$(submit build "$build" "$some")"
 lap "again, without the notes of what is done"
 [ "$(made)" = "$before" ] || fail "models were made twice"
 
+through "$(submit register "$register" "1-$subjects")"
+lap "each registered, on Slurm"
 through "$(cd "$work" && BONETK_OPTIONS=$train sbatch --parsable --cpus-per-task "$processors" --mem 500 \
   "$population/train_after.sbatch" subjects.csv slurm)"
 [ -e "$work/slurm/atlas.h5" ] || { cat "$work"/slurm-*.txt >&2; fail "there is no atlas"; }
@@ -214,13 +216,17 @@ lap "the atlas, on Slurm"
 
 # The same without Slurm.
 cd "$work"
-seq "$subjects" | BONETK_OPTIONS=$build BONETK=$bonetk xargs -P "$processors" -I NUMBER env SLURM_ARRAY_TASK_ID=NUMBER \
-  bash "$population/build_array.sbatch" subjects.csv one > one.log 2>&1 || fail "the array without Slurm fails"
+array() { # step, its options
+  seq "$subjects" | BONETK_OPTIONS=$2 BONETK=$bonetk xargs -P "$processors" -I NUMBER env SLURM_ARRAY_TASK_ID=NUMBER \
+    bash "$population/array.sbatch" "$1" subjects.csv one >> one.log 2>&1 || fail "the array without Slurm fails"
+}
+array build "$build"
+array register "$register"
 BONETK_OPTIONS=$train BONETK=$bonetk bash "$population/train_after.sbatch" subjects.csv one >> one.log 2>&1 || fail "no atlas without Slurm"
 lap "the same without Slurm"
 [ "$(wc -l < slurm/failures.csv)" -eq 4 ] || fail "there are other failures than three"
 same=0
-for path in slurm/failures.csv slurm/atlas.h5 slurm/models/*/*.vtu; do
+for path in slurm/failures.csv slurm/atlas.h5 slurm/models/*/*.vtu slurm/registered/*.vtu; do
   cmp "$path" "one/${path#slurm/}" || fail "$path differs"
   same=$((same + 1))
 done
@@ -230,10 +236,10 @@ say "files that are the same, byte for byte" $same
 if [ "${2:-}" != array ] && command -v snakemake > /dev/null; then
   snakemake --snakefile "$population/Snakefile" --nocolor --jobs 20 --cluster "sbatch --parsable --mem 500 --output /dev/null" \
     --cluster-status "$population/slurm_status.sh" --max-jobs-per-second 20 --max-status-checks-per-second 20 --config \
-    subjects=twelve.csv results=snake bonetk="$bonetk" train_threads=1 "build=$build" "train=$train" > snakemake.log 2>&1 ||
+    subjects=twelve.csv results=snake bonetk="$bonetk" train_threads=1 "build=$build" "register=$register" "train=$train" > snakemake.log 2>&1 ||
     fail "snakemake fails"
   lap "twelve by Snakemake, on Slurm"
-  for path in snake/models/*/*.vtu; do cmp "$path" "one/${path#snake/}" || fail "$path differs"; done
+  for path in snake/models/*/*.vtu snake/registered/*.vtu; do cmp "$path" "one/${path#snake/}" || fail "$path differs"; done
 fi
 cat slurm/failures.csv
 "$bonetk" info slurm/atlas.h5 | head -n 5
