@@ -9,7 +9,6 @@
 #include "boneMeshImageMetrics.h"
 #include "boneContourIO.h"
 #include "boneMeshIO.h"
-#include "boneDensityImageFilter.h"
 #include "boneMeshValidator.h"
 #include "bonePredicates.h"
 #include "boneQualityMeasures.h"
@@ -375,24 +374,14 @@ PrintContourDistances(const std::string & when, const MeshArrays & mesh, const b
 
 /** Overlap and distances with a label map. */
 void
-PrintAgreement(const std::string &      when,
-               const MeshArrays &       mesh,
-               const bone::LabelImage * mask,
-               const bone::CTImage *    grid)
+PrintAgreement(const std::string & when, const MeshArrays & mesh, const bone::LabelImage * mask)
 {
   MeshArrays solid = mesh;
   solid.degree.assign(mesh.tetrahedra.size(), 0);
   solid.coefficients.assign(mesh.tetrahedra.size(), 1.0);
   solid.maximumDegree = 0;
-  auto model = bone::DensityMesh<double>::New();
-  model->SetArrays(solid);
-  auto filter = bone::DensityImageFilter<bone::DensityMesh<double>, bone::CTImage>::New();
-  filter->SetInput(model);
-  filter->SetReferenceImage(grid);
-  filter->SetOutsideValue(std::numeric_limits<float>::quiet_NaN());
-  filter->Update();
   const bone::SurfaceDistances distances = bone::SurfaceDistanceMeter(mask).Measure(mesh);
-  std::cout << when << ".dice " << bone::DiceOverlap(filter->GetOutput(), mask) << '\n'
+  std::cout << when << ".dice " << bone::DiceOverlap(solid, mask) << '\n'
             << when << ".to_label " << distances.meshToMask.mean << '\n'
             << when << ".to_label95 " << distances.meshToMask.percentile95 << '\n'
             << when << ".from_label " << distances.maskToMesh.mean << '\n'
@@ -410,16 +399,12 @@ Improve(const std::string & input,
   const MeshArrays before = bone::ReadMeshArrays(input);
   PrintQuality("before", before);
   bone::LabelImage::Pointer mask;
-  auto                      grid = bone::CTImage::New();
   if (!labels.empty())
   {
     const auto map = bone::ReadLabels(labels);
     const auto extent = bone::MeasureLabel(map, label);
     mask = bone::MaskOfLabel(bone::Crop(map, bone::GrowRegion(bone::ReadCT(labels), extent.region, 10.0)), label);
-    grid->CopyInformation(mask);
-    grid->SetRegions(mask->GetLargestPossibleRegion());
-    grid->Allocate();
-    PrintAgreement("before", before, mask, grid);
+    PrintAgreement("before", before, mask);
   }
   bone::TetraComplex          complex(before);
   bone::ImprovementParameters parameters;
@@ -455,7 +440,7 @@ Improve(const std::string & input,
   }
   if (mask.IsNotNull())
   {
-    PrintAgreement("after", after, mask, grid);
+    PrintAgreement("after", after, mask);
   }
   double displacement = 0.0;
   int    moved = 0;

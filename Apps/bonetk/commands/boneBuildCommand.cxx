@@ -312,7 +312,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
 
   Lap              lap;
-  const Evidence   evidence{ input.ct, input.mask, ct };
+  const Evidence   evidence{ input.ct, input.labels, ct };
   const Evaluation evaluation = [&] {
     const auto stage = session.BeginStage("evaluation");
     return Evaluate(pipeline, evidence);

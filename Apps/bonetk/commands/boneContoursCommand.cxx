@@ -105,7 +105,7 @@ RunContours(const ContoursOptions & options, Session & session)
   }
   // From a few slices the bone is followed through all of the CT.
   const BuildInput input = parameters.contours.followLabel
-                             ? BuildInput{ ct, read.bone.labels, nullptr, read.contours, 0.0 }
+                             ? BuildInput{ ct, read.bone.labels, read.contours, 0.0 }
                              : CropToBone(ct, read.bone, read.contours, parameters.plan);
   if (options.tetrahedra)
   {

@@ -41,7 +41,7 @@ ExpectSolves(bone::SparseCholesky & factor, Eigen::Index size, const std::vector
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
   for (const bone::SparseEntry & entry : entries)
   {
-    dense(entry.row, entry.column) += entry.value;
+    dense(entry.row(), entry.col()) += entry.value();
   }
   const Eigen::MatrixXd right = Eigen::MatrixXd::Random(size, 3);
   ASSERT_TRUE(factor.Factorize(size, entries));

@@ -13,7 +13,7 @@ namespace bone
 struct Evidence
 {
   CTImage::ConstPointer    ct;
-  LabelImage::ConstPointer mask; ///< 1 in the bone; null: the voxels inside the model's finest level
+  LabelImage::ConstPointer mask; ///< not 0 in the bone; null: the voxels inside the model's finest level
   /** The CT as it is in its file, where `ct` is a part of it: the pictures tell its slices; null: `ct` is all. */
   itk::ImageBase<3>::ConstPointer whole;
 };

@@ -11,13 +11,16 @@
 namespace bone
 {
 /** \defgroup MeshImageMetrics How well a mesh agrees with the image it was made from
- * A mask is 1 in the bone and 0 elsewhere. A model image holds the model's density at each voxel's centre of the CT and
- * NaN outside the model.
+ * A mask is 0 outside the bone and not 0 in it. Voxels are in a mesh where their centres are.
  * \{ */
 
-/** Dice overlap of the voxels in the model with those of the mask. */
+/** Dice overlap of the voxels in a mesh, which has a density, with those of the mask. */
 double
-DiceOverlap(const CTImage * model, const LabelImage * mask);
+DiceOverlap(const MeshArrays & mesh, const LabelImage * mask);
+
+/** 1 at the voxels of a grid that are in a mesh, which has a density. */
+LabelImage::Pointer
+MaskOfMesh(const MeshArrays & mesh, const itk::ImageBase<3> * grid);
 
 /** Distances in mm. */
 struct SurfaceDistance

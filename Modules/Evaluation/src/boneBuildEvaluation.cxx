@@ -33,22 +33,6 @@ Voxelize(const MeshType * mesh, const CTImage * reference)
   return filter->GetOutput();
 }
 
-LabelImage::Pointer
-MaskOfModel(const CTImage * model)
-{
-  auto mask = LabelImage::New();
-  mask->CopyInformation(model);
-  mask->SetRegions(model->GetLargestPossibleRegion());
-  mask->Allocate();
-  const float * density = model->GetBufferPointer();
-  short *       inside = mask->GetBufferPointer();
-  for (std::size_t k = 0; k < model->GetLargestPossibleRegion().GetNumberOfPixels(); ++k)
-  {
-    inside[k] = std::isnan(density[k]) ? 0 : 1;
-  }
-  return mask;
-}
-
 CTImage::Pointer
 RadiographOfCT(const CTImage * ct, const LabelImage * mask, const XRayGeometry * geometry)
 {
@@ -140,27 +124,33 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
   Evaluation   evaluation;
 
   LabelImage::ConstPointer mask = evidence.mask;
-  const PlaneView          cut = FrameLargestCut(finest.points, 5.0, 420);
-  std::vector<LevelPanel>  cuts;
-  const auto       distances = evidence.mask ? std::make_optional<SurfaceDistanceMeter>(evidence.mask) : std::nullopt;
+  if (mask.IsNull())
+  {
+    mask = MaskOfMesh(finest, evidence.ct);
+  }
+  // First, and by themselves: they take a copy of the CT for a time.
   RadiographPanels front, side;
+  pipeline.GetRadiograph(0)->Update();
+  front.geometry = pipeline.GetRadiograph(0)->GetGeometry();
   side.geometry = LateralView(levels.front().mesh);
+  for (RadiographPanels * panels : { &front, &side })
+  {
+    panels->reference = RadiographOfCT(evidence.ct, mask, panels->geometry);
+  }
+  const PlaneView         cut = FrameLargestCut(finest.points, 5.0, 420);
+  std::vector<LevelPanel> cuts;
+  const auto distances = evidence.mask ? std::make_optional<SurfaceDistanceMeter>(evidence.mask) : std::nullopt;
   for (std::size_t i = 0; i < levels.size(); ++i)
   {
-    const MeshType *       mesh = levels[i].mesh;
-    const MeshArrays       arrays = mesh->GetArrays();
-    const CTImage::Pointer model = Voxelize(mesh, evidence.ct);
-    if (mask.IsNull())
-    {
-      mask = MaskOfModel(model);
-    }
-    LevelReport report = DescribeLevel(arrays);
+    const MeshType * mesh = levels[i].mesh;
+    const MeshArrays arrays = mesh->GetArrays();
+    LevelReport      report = DescribeLevel(arrays);
     report.densityErrorToLevel1 = levels[i].densityError;
     report.surfaceErrorToLevel1 = levels[i].surfaceError;
     report.stopReason = levels[i].stopReason;
     if (evidence.mask.IsNotNull())
     {
-      report.dice = DiceOverlap(model, mask);
+      report.dice = DiceOverlap(arrays, mask);
       report.distances = distances->Measure(arrays);
     }
     report.density = CompareWithImage(arrays, evidence.ct, mask);
@@ -173,12 +163,6 @@ Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
 
     BuildPipeline::RadiographType * radiograph = pipeline.GetRadiograph(i);
     radiograph->Update();
-    if (i == 0)
-    {
-      front.geometry = radiograph->GetGeometry();
-      front.reference = RadiographOfCT(evidence.ct, mask, front.geometry);
-      side.reference = RadiographOfCT(evidence.ct, mask, side.geometry);
-    }
     report.radiographPercent = RadiographDifferencePercent(front.reference, radiograph->GetOutput());
     const std::string name = LevelName(i, report);
     front.levels.push_back({ name, ToPanel(radiograph->GetOutput()) });

@@ -3,12 +3,15 @@
  *=========================================================================*/
 #include "boneMeshImageMetrics.h"
 
+#include "boneDensityRaster.h"
 #include "boneExecution.h"
 #include "boneOrthonormalBasis.h"
 #include "boneTriangleTree.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace bone
 {
@@ -55,6 +58,22 @@ SampleTriangle(const TriangleTree::Triangle & t, double step, std::vector<Vector
   }
 }
 
+/** The mesh's density at the voxels of each slice, NaN outside the mesh: on all threads, a slice at a time as a whole
+ * image of them would take much memory. `work` is told slice, number of its first voxel, and densities. */
+template <typename TWork>
+void
+ForSlices(const MeshArrays & mesh, const LabelImage * grid, TWork && work)
+{
+  const VoxelGrid     voxels = MakeVoxelGrid(*grid, grid->GetLargestPossibleRegion());
+  const DensityRaster raster(mesh, voxels);
+  const auto          size = static_cast<std::size_t>(voxels.size[0]) * static_cast<std::size_t>(voxels.size[1]);
+  Execution().For(static_cast<std::size_t>(voxels.size[2]), [&](std::size_t z) {
+    std::vector<double> values(size);
+    raster.FillSlice(static_cast<int>(z), std::numeric_limits<double>::quiet_NaN(), values.data());
+    work(z, z * size, values);
+  });
+}
+
 SurfaceDistance
 DistanceToTree(const std::vector<Vector3> & points, const TriangleTree & tree)
 {
@@ -81,21 +100,38 @@ DistanceToFaces(const std::vector<Vector3> & points, const VoxelFaces & faces)
 } // namespace
 
 double
-DiceOverlap(const CTImage * model, const LabelImage * mask)
+DiceOverlap(const MeshArrays & mesh, const LabelImage * mask)
 {
-  const std::size_t count = mask->GetLargestPossibleRegion().GetNumberOfPixels();
-  const float *     m = model->GetBufferPointer();
-  const short *     l = mask->GetBufferPointer();
-  std::size_t       both = 0;
-  std::size_t       sum = 0;
-  for (std::size_t k = 0; k < count; ++k)
-  {
-    const bool inModel = !std::isnan(m[k]);
-    const bool inMask = l[k] != 0;
-    both += inModel && inMask ? 1 : 0;
-    sum += (inModel ? 1 : 0) + (inMask ? 1 : 0);
-  }
-  return sum == 0 ? 0.0 : 2.0 * static_cast<double>(both) / static_cast<double>(sum);
+  const auto               region = mask->GetLargestPossibleRegion();
+  std::vector<std::size_t> both(region.GetSize(2), 0), sum(region.GetSize(2), 0);
+  const short * const      l = mask->GetBufferPointer();
+  ForSlices(mesh, mask, [&](std::size_t z, std::size_t first, const std::vector<double> & values) {
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      const bool inMesh = !std::isnan(values[k]);
+      const bool inMask = l[first + k] != 0;
+      both[z] += inMesh && inMask ? 1 : 0;
+      sum[z] += (inMesh ? 1 : 0) + (inMask ? 1 : 0);
+    }
+  });
+  const auto all = std::accumulate(sum.begin(), sum.end(), std::size_t{ 0 });
+  const auto common = std::accumulate(both.begin(), both.end(), std::size_t{ 0 });
+  return all == 0 ? 0.0 : 2.0 * static_cast<double>(common) / static_cast<double>(all);
+}
+
+LabelImage::Pointer
+MaskOfMesh(const MeshArrays & mesh, const itk::ImageBase<3> * grid)
+{
+  auto mask = LabelImage::New();
+  mask->CopyInformation(grid);
+  mask->SetRegions(grid->GetLargestPossibleRegion());
+  mask->Allocate();
+  short * const l = mask->GetBufferPointer();
+  ForSlices(mesh, mask, [&](std::size_t, std::size_t first, const std::vector<double> & values) {
+    std::transform(
+      values.begin(), values.end(), l + first, [](double value) { return static_cast<short>(!std::isnan(value)); });
+  });
+  return mask;
 }
 
 SurfaceDistanceMeter::SurfaceDistanceMeter(const LabelImage * mask)

@@ -14,8 +14,7 @@ namespace bone
 struct BuildInput
 {
   CTImage::Pointer      ct;
-  LabelImage::Pointer   labels;         ///< null without a label map
-  LabelImage::Pointer   mask;           ///< 1 in the bone; null without a label map
+  LabelImage::Pointer   labels;         ///< of the bone, 0 elsewhere; null without a label map
   ContourStack::Pointer contours;       ///< initial ones; may be null
   double                surface{ 0.0 }; ///< of the label, mm^2; 0 without a label map
 };

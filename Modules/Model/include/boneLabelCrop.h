@@ -83,6 +83,10 @@ Crop(const CTImage * image, const CTImage::RegionType & region);
 LabelImage::Pointer
 Crop(const LabelImage * image, const CTImage::RegionType & region);
 
+/** Makes voxels of other labels 0; with label 0, none. */
+void
+RemoveOtherLabels(int label, LabelImage * labels);
+
 /** 1 where the label is, 0 elsewhere. */
 LabelImage::Pointer
 MaskOfLabel(const LabelImage * labels, int label);

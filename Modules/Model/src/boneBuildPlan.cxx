@@ -35,7 +35,7 @@ CropParts(const CTImage *             ct,
   const CTImage::RegionType region = GrowRegion(ct, extent.region, plan.cropMargin);
   input.ct = Crop(ct, region);
   input.labels = Crop(onGrid, region);
-  input.mask = MaskOfLabel(input.labels, plan.label);
+  RemoveOtherLabels(plan.label, input.labels);
   input.surface = extent.surface;
   return input;
 }
@@ -43,12 +43,11 @@ CropParts(const CTImage *             ct,
 BuildInput
 InOwnOrientation(BuildInput input)
 {
-  if (input.mask)
+  if (input.labels)
   {
-    const std::array<bool, 3> flips = FindFlips(input.ct, input.mask);
+    const std::array<bool, 3> flips = FindFlips(input.ct, input.labels);
     input.ct = Flip(input.ct, flips);
     input.labels = Flip(input.labels, flips);
-    input.mask = Flip(input.mask, flips);
   }
   return input;
 }

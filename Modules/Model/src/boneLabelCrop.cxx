@@ -384,6 +384,17 @@ Crop(const LabelImage * image, const CTImage::RegionType & region)
   return cropped;
 }
 
+void
+RemoveOtherLabels(int label, LabelImage * labels)
+{
+  short * const first = labels->GetBufferPointer();
+  std::replace_if(
+    first,
+    first + labels->GetBufferedRegion().GetNumberOfPixels(),
+    [label](short value) { return !IsLabel(value, label); },
+    short{ 0 });
+}
+
 LabelImage::Pointer
 MaskOfLabel(const LabelImage * labels, int label)
 {

@@ -11,12 +11,36 @@
 
 namespace bone
 {
-/** One summand of an element of a sparse matrix: those of one place add up. */
-struct SparseEntry
+/** One summand of an element of a sparse matrix: those of one place add up. What Eigen asks of a triplet. */
+class SparseEntry
 {
-  Eigen::Index row;
-  Eigen::Index column;
-  double       value;
+public:
+  SparseEntry(Eigen::Index row, Eigen::Index column, double value)
+    : m_Row(static_cast<int>(row))
+    , m_Column(static_cast<int>(column))
+    , m_Value(value)
+  {}
+
+  int
+  row() const
+  {
+    return m_Row;
+  }
+  int
+  col() const
+  {
+    return m_Column;
+  }
+  double
+  value() const
+  {
+    return m_Value;
+  }
+
+private:
+  int    m_Row;
+  int    m_Column;
+  double m_Value;
 };
 
 /** Solves a sparse, symmetric, positive definite system by Eigen's SimplicialLDLT, which is compiled here alone. Only

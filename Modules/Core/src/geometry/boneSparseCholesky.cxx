@@ -24,14 +24,8 @@ SparseCholesky::~SparseCholesky() = default;
 bool
 SparseCholesky::Factorize(Eigen::Index size, const std::vector<SparseEntry> & entries)
 {
-  std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(entries.size());
-  for (const SparseEntry & entry : entries)
-  {
-    triplets.emplace_back(static_cast<int>(entry.row), static_cast<int>(entry.column), entry.value);
-  }
   Eigen::SparseMatrix<double> matrix(size, size);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  matrix.setFromTriplets(entries.begin(), entries.end());
   const auto samePlaces = [](const Eigen::SparseMatrix<double> & a, const Eigen::SparseMatrix<double> & b) {
     return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
            std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&

@@ -108,7 +108,7 @@ public:
       }
     }
     m_Right.setZero(static_cast<Eigen::Index>(m_Free.size()), 3);
-    m_Entries.reserve(m_Free.size() + 9 * springs.size() + 16 * hinges);
+    m_Entries.reserve(m_Free.size() + 6 * springs.size() + 10 * hinges);
     for (IdType p : m_Free)
     {
       Add<1>({ p }, { 1.0 }, Hold * weights[p], points[p]);
@@ -138,9 +138,13 @@ public:
       for (std::size_t j = 0; j < VCount; ++j)
       {
         const double value = weight * factors[i] * factors[j];
-        if (m_Place[points[j]] >= 0)
+        const int    column = m_Place[points[j]];
+        if (column >= 0)
         {
-          m_Entries.push_back({ row, m_Place[points[j]], value });
+          if (row >= column) // the lower triangle is enough
+          {
+            m_Entries.push_back({ row, column, value });
+          }
         }
         else
         {
