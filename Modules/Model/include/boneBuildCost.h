@@ -25,8 +25,9 @@ struct BuildCost
 
 /** \brief What a build of this size and with these parameters takes, about.
  *
- * Linear in the numbers of voxels and tetrahedra, with constants that were fitted to builds of analytic phantoms and
- * clinical bones; the guide says how far it is off. Other machines are faster or slower. */
+ * Linear in the numbers of voxels and tetrahedra, memory the larger of two such, with constants that were fitted to
+ * builds of analytic phantoms and clinical bones; the guide says how far it is off. Other machines are faster or
+ * slower. */
 BuildCost
 EstimateCost(const BuildSize & size, const BuildParameters & parameters);
 } // namespace bone

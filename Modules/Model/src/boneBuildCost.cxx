@@ -15,8 +15,9 @@ constexpr double SecondsOfMillionVoxels = 0.6; // of the bone's box
 constexpr double SecondsOfThousandCells = 0.42;
 constexpr double SecondsOfReading = 0.03; // a million voxels of the CT
 constexpr double ParallelShare = 0.4;     // of a bone's seconds
-constexpr double MegabytesOfProgram = 90.0;
-constexpr double MegabytesOfMillionVoxels = 17.0;
+constexpr double MegabytesOfProgram = 117.0;
+constexpr double MegabytesOfMillionVoxels = 14.0;    // while contours are found
+constexpr double MegabytesOfMillionVoxelsKept = 6.0; // while the mesh is made
 constexpr double MegabytesOfThousandCells = 3.5;
 } // namespace
 
@@ -32,8 +33,9 @@ EstimateCost(const BuildSize & size, const BuildParameters & parameters)
     const double voxels = box / million;
     const double seconds = SecondsOfBone + SecondsOfMillionVoxels * voxels + SecondsOfThousandCells * cells;
     cost.seconds += seconds * (1.0 - ParallelShare + ParallelShare / threads);
-    cost.megabytes = std::max(
-      cost.megabytes, MegabytesOfProgram + MegabytesOfMillionVoxels * voxels + MegabytesOfThousandCells * cells);
+    const double contours = MegabytesOfMillionVoxels * voxels;
+    const double mesh = MegabytesOfMillionVoxelsKept * voxels + MegabytesOfThousandCells * cells;
+    cost.megabytes = std::max(cost.megabytes, MegabytesOfProgram + std::max(contours, mesh));
   }
   return cost;
 }
