@@ -4,7 +4,7 @@
     population.py build    SUBJECTS.csv NAME|NUMBER --results FOLDER [--attempt N] [--attempts N] [--again] -- BONETK OPTIONS
     population.py standard SUBJECTS.csv             --results FOLDER [--level N]
     population.py register SUBJECTS.csv NAME|NUMBER --results FOLDER [--level N] [--attempt ...] -- BONETK OPTIONS
-    population.py collect  SUBJECTS.csv             --results FOLDER
+    population.py collect  SUBJECTS.csv             --results FOLDER [--level N]
 
 `build` runs `BONETK build` for one subject, named, or the table's first, second, … It writes FOLDER/outcomes/NAME.csv and
 ends with 0 once nothing more is to be tried: the model is there, or the data (exit code 1) or the options (2) are bad, or
@@ -15,6 +15,7 @@ through, does so too, and then runs `BONETK register subject` likewise, which wr
 """
 import argparse
 import csv
+import filecmp
 import hashlib
 import io
 import json
@@ -144,10 +145,14 @@ def model(options, name):
     return os.path.join(paths(options.results, name)[-1], f"model_L{options.level}.vtu")
 
 
+def first_built(subjects, options):
+    return next((name for name in subjects if result(options.results, name, "build")[1] == "0"), None)
+
+
 def standard(subjects, options):
     """The standard model. It stays when subjects come, so that all registered models have its topology."""
     path = os.path.join(options.results, "standard.vtu")
-    first = next((name for name in subjects if result(options.results, name, "build")[1] == "0"), None)
+    first = first_built(subjects, options)
     if first and not os.path.exists(path):
         part = f"{path}.{os.getpid()}.part"  # other jobs may do the same
         shutil.copyfile(model(options, first), part)
@@ -179,6 +184,10 @@ def collect(subjects, options):
     # With the checksum the list changes when a model does, so that the atlas is made anew.
     write(os.path.join(options.results, "subjects.txt"), "\n".join([f"# models {models.hexdigest()}", *used, ""]))
     print(f"{len(used)} models, {len(failures)} failures")
+    first = first_built(subjects, options)
+    if first and not filecmp.cmp(standard(subjects, options), model(options, first), shallow=False):
+        print(f"the atlas has the topology of {options.results}/standard.vtu, which is not the present model of {first}: to take"
+              " that, remove standard.vtu and the folder registrations, and begin again", file=sys.stderr)
 
 
 def main():

@@ -90,6 +90,7 @@ class Population(TestCase):
         code, out, err = run("bash", f"{FOLDER}/train_after.sbatch", "subjects.csv", "array",
                              env=dict(os.environ, BONETK="./bonetk", BONETK_OPTIONS=TRAIN))
         self.assertEqual(code, 0, out + err)
+        return err
 
     def test_array(self):
         # A task that was requeued so often that no attempt is left says where the last one was.
@@ -107,7 +108,7 @@ class Population(TestCase):
         self.assertEqual(self.calls(), ([], ["s0.vtu", "s1.vtu", "s2.vtu", "s2.vtu"], 0))
         self.array("register", REGISTER)
         self.assertEqual(self.calls(), ([], [], 0))
-        self.train()
+        self.assertNotIn("standard.vtu", self.train())
         self.check("array", ["s0", "s1", "s2"])
 
         # A subject that is built anew is registered anew, to the same standard.
@@ -118,6 +119,7 @@ class Population(TestCase):
         self.array("register", REGISTER)
         self.assertEqual(self.calls(), (["s0"], ["s0.vtu"], 0))
         self.assertEqual(read("array/standard.vtu"), standard)
+        self.assertIn("array/standard.vtu, which is not the present model of s0", self.train())
 
     def test_registration_that_fails(self):
         self.rows = self.rows[:1] + [["bad", "ct0.nii.gz", "l0.nii.gz", ""]] + self.rows[4:]
