@@ -135,7 +135,8 @@ class Population(TestCase):
 
     def snakemake(self, *options):
         code, out, err = run("snakemake", "--snakefile", f"{FOLDER}/Snakefile", "--cores", 2, *options, "--config",
-                             "bonetk=./bonetk", f"build={BUILD}", f"register={REGISTER}", f"train={TRAIN}", env=dict(os.environ, HOME=os.getcwd()))
+                             "bonetk=./bonetk", f"build={BUILD}", f"register={REGISTER}", f"train={TRAIN}",
+                             env=dict(os.environ, HOME=os.getcwd()))
         self.assertEqual(code, 0, out + err)
         return out + err
 

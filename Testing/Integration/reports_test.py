@@ -105,12 +105,14 @@ class Reports(TestCase):
         self.assertEqual(made(), ["one", "two"])
         self.assertEqual(made(), [])
         committed("Modules/README.md")
-        committed("Modules/Some/test/b.cxx")
+        committed("Modules/Some/test/bTest.cxx")
         (pages / "two.md").unlink()
         self.assertEqual(made(), ["two"])
         committed("Modules/c.cxx")
         self.assertEqual(made(), ["one", "two"])
-        self.assertEqual(len(os.listdir("work")), 2)
+        committed("Modules/Some/test/reference.cxx")  # that validation programs take
+        self.assertEqual(made(), ["one", "two"])
+        self.assertEqual(len(os.listdir("work")), 3)
 
 
 if __name__ == "__main__":
