@@ -2,7 +2,8 @@
 # GoogleTest for the test programs (position-independent executables, which GCC does not let share the first).
 # Nine tenths of what a source of BoneTK is compiled from are ITK's image, Eigen and the standard library.
 option(BONETK_PRECOMPILE "Precompile the headers that most sources include" ON)
-# A library's sources are compiled twelve at once, bonetk's all: what they instantiate alike is instantiated once.
+# A library's sources and a module's tests are compiled twelve at once, bonetk's all: what they instantiate alike is
+# instantiated once. Names that two tests of a module share stand in a namespace named after the test.
 option(BONETK_UNITY_BUILD "Compile several sources of a library or program at once" ON)
 
 function(bonetk_unity_build target sources)

@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-namespace
+namespace DensityImageFilterTests
 {
 using namespace bone;
 using Filter = DensityImageFilter<>;
@@ -290,4 +290,4 @@ TEST(DensityImageFilter, PrintsItsParameters)
   Filter::New()->Print(text);
   EXPECT_NE(text.str().find("OutsideValue: -1024"), std::string::npos);
 }
-} // namespace
+} // namespace DensityImageFilterTests

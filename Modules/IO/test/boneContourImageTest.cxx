@@ -12,7 +12,7 @@
 
 namespace bone
 {
-namespace
+namespace ContourImageTests
 {
 std::vector<Vector3>
 Circle(const ContourStack * stack, double radius, double height, bool hole = false)
@@ -104,7 +104,6 @@ CountWrong(const LabelImage * image)
   }
   return wrong;
 }
-} // namespace
 
 TEST(ContourImage, VoxelsHaveTheRegionOfTheNearestSlice)
 {
@@ -195,4 +194,5 @@ TEST_F(ContourImageFileTest, ContoursAreReadFromALabelMap)
   EXPECT_EQ(ReadContours(Path("labels.nii.gz"))->GetSlices().size(), 3u);
   EXPECT_THAT(ErrorOf([&] { ReadContours(Path("labels.nii.gz"), { "", 7, 2 }); }), testing::HasSubstr("is 7"));
 }
+} // namespace ContourImageTests
 } // namespace bone

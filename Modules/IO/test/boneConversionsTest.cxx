@@ -19,7 +19,7 @@
 
 namespace bone
 {
-namespace
+namespace ConversionsTests
 {
 using testing::HasSubstr;
 
@@ -37,7 +37,6 @@ ErrorOf(TAction && action)
   }
   return "no exception was thrown";
 }
-} // namespace
 
 TEST(Conversions, GridHasTheNamedArraysWithTheirTypes)
 {
@@ -183,4 +182,5 @@ TEST(Conversions, ItkMeshWithTrianglesOrWithoutCellsIsRefused)
   mesh->SetCell(0, cell);
   EXPECT_THAT(ErrorOf([&] { ToMeshArrays(mesh.GetPointer()); }), HasSubstr("cell 0 is no tetrahedron"));
 }
+} // namespace ConversionsTests
 } // namespace bone

@@ -9,7 +9,7 @@ namespace bone
 {
 using testing::HasSubstr;
 
-namespace
+namespace LandmarkIOTests
 {
 class LandmarkIO : public FileTest
 {
@@ -43,7 +43,6 @@ ObliqueView()
   view.spacing = { 0.5, 0.25 };
   return view;
 }
-} // namespace
 
 TEST_F(LandmarkIO, ReadsTheLabelledPointsOfMarkupsInEitherSystem)
 {
@@ -111,4 +110,5 @@ TEST_F(LandmarkIO, RefusesWhatIsNoLandmarks)
   EXPECT_THAT(error(Markups(R"({"position": [1, 2, 3]})")), HasSubstr("without a name"));
   EXPECT_THAT(error(Markups(Two + "," + Two)), HasSubstr("two landmarks 'a'"));
 }
+} // namespace LandmarkIOTests
 } // namespace bone

@@ -19,7 +19,7 @@ namespace bone
 {
 using testing::HasSubstr;
 
-namespace
+namespace RegionReadingTests
 {
 using Region = CTImage::RegionType;
 
@@ -174,7 +174,6 @@ Nifti(short type, float slope, float intercept, bool swapped, bool placed)
   }
   return text;
 }
-} // namespace
 
 TEST_F(RegionReadingTest, ARegionOfAnyFormatIsThatOfTheWhole)
 {
@@ -359,4 +358,5 @@ TEST_F(RegionReadingTest, WhatIsNoLabelIsToldWhereItIsRead)
               }),
               HasSubstr("l.mha: is no label map: its value at [1, 2, 7] is 0.5"));
 }
+} // namespace RegionReadingTests
 } // namespace bone

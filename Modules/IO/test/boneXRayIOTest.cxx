@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-namespace
+namespace XRayIOTests
 {
 constexpr int Columns = 6, Rows = 4;
 
@@ -96,7 +96,6 @@ Pixel(const XRayFile & file, int column, int row)
 {
   return file.image->GetPixel({ { column, row, 0 } });
 }
-} // namespace
 
 TEST_F(XRayIO, AFluoroscopicImageHasItsViewAndLiesOnItsDetector)
 {
@@ -300,4 +299,5 @@ TEST_F(XRayIO, CompressedImagesHaveToHaveTheirPixels)
   WriteText("cut.dcm", text);
   EXPECT_THAT(ErrorOf([&] { ReadXRay(Path("cut.dcm")); }), HasSubstr("cut.dcm"));
 }
+} // namespace XRayIOTests
 } // namespace bone

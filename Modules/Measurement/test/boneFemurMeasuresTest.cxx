@@ -28,19 +28,6 @@ ReasonOf(const MeasureList & list, const std::string & name)
   return "";
 }
 
-std::string
-SideOf(const MeasureList & list)
-{
-  for (const Measure & measure : list.measures)
-  {
-    if (measure.name == "side")
-    {
-      return measure.text;
-    }
-  }
-  return "";
-}
-
 TEST(FemurMeasures, KnownAnglesAndSizesAreFound)
 {
   for (const FemurShape & shape :

@@ -36,19 +36,6 @@ PhantomLandmarks()
            { "pubic_tubercle", Vector3(40, -40, -15) } };
 }
 
-std::string
-SideOf(const MeasureList & list)
-{
-  for (const Measure & measure : list.measures)
-  {
-    if (measure.name == "side")
-    {
-      return measure.text;
-    }
-  }
-  return "";
-}
-
 TEST(HemipelvisMeasures, ThePhantomsAcetabulumIsFound)
 {
   // Where ramus or wing rise above the rim's plane they turn it, of one phantom by 1.5 degrees.

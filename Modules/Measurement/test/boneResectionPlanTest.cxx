@@ -5,6 +5,7 @@
 
 #include "boneDensityTestMeshes.h"
 #include "boneTestBodies.h"
+#include "boneTestMeasures.h"
 
 #include <gtest/gtest.h>
 
@@ -19,20 +20,6 @@ Beam()
   MeshArrays mesh = test::MakeBlock({ 4, 6, 8 }, Vector3(-4, -6, -8), 2.0, 0.1);
   test::SetDensity(mesh, 1, [](const Vector3 & x) { return 100.0 + 5.0 * x.x(); });
   return mesh;
-}
-
-double
-ValueOf(const MeasureList & list, const std::string & name)
-{
-  for (const Measure & measure : list.measures)
-  {
-    if (measure.name == name)
-    {
-      return measure.value.at(0);
-    }
-  }
-  ADD_FAILURE() << name << " is missing";
-  return 0.0;
 }
 
 TEST(ResectionPlan, ARectangleHasItsMoments)

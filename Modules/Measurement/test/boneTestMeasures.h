@@ -26,6 +26,20 @@ ValueOf(const MeasureList & list, const std::string & name)
   ADD_FAILURE() << name << " is missing";
   return 0.0;
 }
+
+/** The side of the body that was found; empty where none was. */
+inline std::string
+SideOf(const MeasureList & list)
+{
+  for (const Measure & measure : list.measures)
+  {
+    if (measure.name == "side")
+    {
+      return measure.text;
+    }
+  }
+  return "";
+}
 } // namespace bone
 
 #endif

@@ -14,7 +14,7 @@
 
 using namespace bone;
 
-namespace
+namespace PhantomSamplerTests
 {
 /** The ideal density convolved with a Gaussian, by brute force on a fine grid with a random offset. */
 double
@@ -84,7 +84,6 @@ ExpectAgreement(PhantomModel::Pointer model,
     }
   }
 }
-} // namespace
 
 TEST(PhantomSampler, AgreesWithBruteForceForANarrowPointSpread)
 {
@@ -183,3 +182,4 @@ TEST(PhantomNoise, IsStandardNormal)
   EXPECT_NEAR(neighbours / count, 0.0, 0.01);
   EXPECT_NE(PhantomNoise(1, 0), PhantomNoise(2, 0));
 }
+} // namespace PhantomSamplerTests

@@ -9,7 +9,7 @@
 
 using namespace bone;
 
-namespace
+namespace EnhancedSmoothingTests
 {
 constexpr IdType Inner = 0;
 
@@ -47,7 +47,6 @@ HeightAfter(double weight, SmoothingReport & report)
   EXPECT_NEAR(complex.Points()[Inner].head<2>().norm(), 0.0, 1e-12);
   return complex.Points()[Inner].z();
 }
-} // namespace
 
 TEST(EnhancedIteration, EachStepBackKeepsTheWeightsShareOfTheOldPlace)
 {
@@ -66,3 +65,4 @@ TEST(EnhancedIteration, APointStaysWhereNoStepBackIsFarEnough)
   EXPECT_EQ(report.moves, 0u);
   EXPECT_EQ(report.refused[static_cast<int>(MeshOperation::Orientation)], 1u);
 }
+} // namespace EnhancedSmoothingTests

@@ -18,7 +18,7 @@
 
 using namespace bone;
 
-namespace
+namespace MeshQualityFilterTests
 {
 using MeshType = DensityMesh<double>;
 
@@ -146,7 +146,6 @@ SmallestAngle(const MeshArrays & mesh)
 {
   return SummarizeQuality(mesh, QualityMeasure::MinimumDihedralAngle).minimum;
 }
-} // namespace
 
 TEST(MeshQualityFilter, KeepsMeshesValidAndRaisesTheirQuality)
 {
@@ -473,3 +472,4 @@ TEST(TetraSwapFilter, RefusesBadParameters)
   filter->SetMaximumPasses(-1);
   EXPECT_THROW(filter->Update(), itk::ExceptionObject);
 }
+} // namespace MeshQualityFilterTests

@@ -14,7 +14,7 @@
 
 using namespace bone;
 
-namespace
+namespace SharpEdgesTests
 {
 constexpr double Radius = 12.0;
 constexpr double Inner = Radius - Radius / 3.5;
@@ -48,7 +48,6 @@ LargestTurn(const SurfaceEnergy & energy)
   }
   return largest;
 }
-} // namespace
 
 TEST(SurfaceEnergy, ChangesAreDifferencesOfTheWhole)
 {
@@ -181,3 +180,4 @@ TEST(CollapseSharpEdges, IsPartOfTheQualityStageWhereContoursAreGiven)
     EXPECT_TRUE(validation.IsValid()) << validation.Summary();
   }
 }
+} // namespace SharpEdgesTests

@@ -14,7 +14,7 @@
 
 using namespace bone;
 
-namespace
+namespace SideKeeperTests
 {
 constexpr double Radius = 12.0;
 
@@ -69,7 +69,6 @@ Restored(const MeshArrays & mesh, const LabelOutline & outline)
   SideKeeper(outline).Restore(complex, mover, parameters);
   return complex.Compact(mesh, points, cells);
 }
-} // namespace
 
 TEST(SideKeeper, PutsCentresOnTheirSideWhereLittleIsMissing)
 {
@@ -113,3 +112,4 @@ TEST(SideKeeper, LeavesWhatIsRightAndWhatIsFarOff)
   EXPECT_EQ(Restored(mesh, kept).points, mesh.points);
   EXPECT_EQ(Restored(mesh, LabelOutline()).points, mesh.points);
 }
+} // namespace SideKeeperTests

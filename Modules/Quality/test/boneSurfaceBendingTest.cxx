@@ -15,7 +15,7 @@
 
 using namespace bone;
 
-namespace
+namespace SurfaceBendingTests
 {
 constexpr double Radius = 12.0;
 
@@ -69,7 +69,6 @@ CornerSprings(const TetraComplex & complex, const Vector3 & move = Vector3::Zero
   }
   return springs;
 }
-} // namespace
 
 TEST(SurfaceBending, TheEnergyIsThatOfTheTurn)
 {
@@ -226,3 +225,4 @@ TEST(SurfaceBending, AStifferSurfaceTurnsLessAndStaysOnTheContours)
   EXPECT_LT(turn[1], 0.97 * turn[0]);
   EXPECT_LT(distance[1], 0.5);
 }
+} // namespace SurfaceBendingTests

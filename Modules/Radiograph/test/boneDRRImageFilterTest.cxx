@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace DRRImageFilterTests
 {
 using namespace bone;
 using Mesh = DensityMesh<double>;
@@ -81,7 +81,6 @@ ExpectRefusal(Filter * filter, const std::string & words)
     EXPECT_THAT(error.what(), testing::HasSubstr(words));
   }
 }
-} // namespace
 
 TEST(DRRImageFilter, TheOutputKnowsWhereItIs)
 {
@@ -324,3 +323,4 @@ TEST(DRRImageFilter, PrintsItsParameters)
     EXPECT_THAT(text.str(), testing::HasSubstr(name));
   }
 }
+} // namespace DRRImageFilterTests

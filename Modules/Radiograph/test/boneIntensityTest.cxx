@@ -12,7 +12,7 @@
 
 #include <numeric>
 
-namespace
+namespace IntensityTests
 {
 using namespace bone;
 using Image = itk::Image<float, 3>;
@@ -78,7 +78,6 @@ ExpectSameWhenStreamed(TFilter * filter, const std::function<Image::Pointer()> &
     EXPECT_NE(whole.front(), whole.back());
   }
 }
-} // namespace
 
 TEST(AttenuationImageFilter, HasTheSamePixelsWhenStreamed)
 {
@@ -207,3 +206,4 @@ TEST(NoiseImageFilter, RefusesWhatIsNoIntensity)
   filter->SetPhotonsPerUnit(-1);
   EXPECT_THROW(filter->Update(), itk::ExceptionObject);
 }
+} // namespace IntensityTests

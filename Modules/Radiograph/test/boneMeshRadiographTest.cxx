@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace
+namespace MeshRadiographTests
 {
 using namespace bone;
 using View = XRayGeometry::View;
@@ -110,7 +110,6 @@ Staircase()
   return test::GridMesh(
     { { 4, 4, 3 } }, lower, Vector3(10, 8, 8), 0.2, [](int i, int j, int) { return i + j < 5 && (i != 1 || j != 1); });
 }
-} // namespace
 
 TEST(MeshRadiograph, ABoxOfConstantDensityGivesItsChords)
 {
@@ -708,3 +707,4 @@ TEST(MeshRadiograph, CountsTheCellsPassed)
     EXPECT_EQ(passed[i], i % 60 < 39 ? 18 : 0) << "three tetrahedra of a Kuhn cube lie on each of its straight rays";
   }
 }
+} // namespace MeshRadiographTests

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace VoxelDRRImageFilterTests
 {
 using namespace bone;
 using Image = itk::Image<float, 3>;
@@ -128,7 +128,6 @@ const std::vector<Vector3> beams = { Vector3(0.3, 1, 0.2),
                                      Vector3(1, 0.1, -0.4),
                                      Vector3(0.2, 0.3, -1),
                                      Vector3(-1, -1, -1) };
-} // namespace
 
 TEST(VoxelDRRImageFilter, AnImageOfOnesGivesTheExactChordsOfItsBox)
 {
@@ -359,3 +358,4 @@ TEST(VoxelDRRImageFilter, ReportsProgressOfTwoViewsThatDoesNotFallAndStopsOnAbor
   test::ExpectUsableAfterAbort(filter);
   EXPECT_EQ(std::vector<float>(Pixels(filter), Pixels(filter) + count), before);
 }
+} // namespace VoxelDRRImageFilterTests

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace AtlasVolumeRegistrationTests
 {
 using namespace bone;
 using Image = itk::Image<float, 3>;
@@ -354,4 +354,4 @@ TEST(AtlasVolumeRegistration, TakesTheDensityOfWhatTheCTShows)
     }
   }
 }
-} // namespace
+} // namespace AtlasVolumeRegistrationTests

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace DeformableModelTests
 {
 using namespace bone;
 
@@ -139,4 +139,4 @@ TEST(DeformableModel, CoarsensAndKeepsTheModesOfThePointsThatStay)
   EXPECT_EQ(same.mesh.coefficients, model.meanDensities);
   EXPECT_EQ(same.displacements.size(), 1u);
 }
-} // namespace
+} // namespace DeformableModelTests

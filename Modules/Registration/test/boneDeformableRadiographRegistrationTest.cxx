@@ -14,7 +14,7 @@
 
 #include <random>
 
-namespace
+namespace DeformableRadiographRegistrationTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -450,4 +450,4 @@ TEST(DeformablePosterior, BonesDrawnScatterAsStated)
   others.smoothModes = 3;
   EXPECT_THROW(DeformablePosterior(Atlas(), others, result), std::invalid_argument);
 }
-} // namespace
+} // namespace DeformableRadiographRegistrationTests

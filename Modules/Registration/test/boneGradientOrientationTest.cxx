@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace
+namespace GradientOrientationTests
 {
 using namespace bone;
 
@@ -223,4 +223,4 @@ TEST(GradientOrientation, RefusesWhatTellsNothing)
   target.values.pop_back();
   EXPECT_THROW(GradientOrientation(target, 1.0), std::invalid_argument);
 }
-} // namespace
+} // namespace GradientOrientationTests

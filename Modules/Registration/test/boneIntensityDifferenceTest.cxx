@@ -13,7 +13,7 @@
 #include <numeric>
 #include <random>
 
-namespace
+namespace IntensityDifferenceTests
 {
 using namespace bone;
 
@@ -362,4 +362,4 @@ TEST(IntensityDifference, RefusesWhatTellsNothing)
   target.values.pop_back();
   refuses(target, {});
 }
-} // namespace
+} // namespace IntensityDifferenceTests

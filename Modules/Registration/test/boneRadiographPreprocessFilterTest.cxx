@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace
+namespace RadiographPreprocessFilterTests
 {
 using namespace bone;
 using testing::HasSubstr;
@@ -95,7 +95,6 @@ ErrorOf(Filter * filter)
   }
   return "none";
 }
-} // namespace
 
 TEST(RadiographPreprocess, IntensitiesBecomeTheLineIntegralsThatMadeThem)
 {
@@ -497,3 +496,4 @@ TEST(RadiographPreprocess, RefusesAVolume)
   image->Allocate(true);
   EXPECT_THAT(ErrorOf(Ready(image)), HasSubstr("8 x 8 x 4"));
 }
+} // namespace RadiographPreprocessFilterTests

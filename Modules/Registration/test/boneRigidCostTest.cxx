@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace RigidCostTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -178,4 +178,4 @@ TEST(RigidCostMetric, ServesOptimisersOfITK)
     EXPECT_LT(LargestDistance(scene.mesh, metric->GetPose(), Truth), 0.4) << optimiser->GetNameOfClass();
   }
 }
-} // namespace
+} // namespace RigidCostTests

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace RigidRadiographRegistrationTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -362,4 +362,4 @@ TEST(RigidRadiographRegistration, RefusesWhatItCannotUse)
   range->SetPatch(2);
   EXPECT_THAT(ErrorOf(range), HasSubstr("Patch is 2"));
 }
-} // namespace
+} // namespace RigidRadiographRegistrationTests

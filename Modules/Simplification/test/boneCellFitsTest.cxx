@@ -10,7 +10,7 @@
 
 using namespace bone;
 
-namespace
+namespace CellFitsTests
 {
 using MeshType = DensityMesh<double>;
 using FilterType = TetraCollapseFilter<MeshType>;
@@ -71,7 +71,6 @@ LargestCellError(const MeshArrays & finest, const MeshArrays & level)
   }
   return largest;
 }
-} // namespace
 
 TEST(CellFits, AFitReproducesWhatItCanAndRaisesItsDegreeForTheRest)
 {
@@ -134,3 +133,4 @@ TEST(CellFits, RaisedDegreesLetMoreCellsGo)
   EXPECT_LE(filter->GetReport()[0].cellError, 6.0);
   EXPECT_LT(LargestCellError(mesh, level), 9.0);
 }
+} // namespace CellFitsTests

@@ -19,7 +19,7 @@
 
 using namespace bone;
 
-namespace
+namespace TetraCollapseFilterTests
 {
 using MeshType = DensityMesh<double>;
 using FilterType = TetraCollapseFilter<MeshType>;
@@ -82,7 +82,6 @@ ExpectSubset(const MeshArrays & before, const MeshArrays & level, const std::vec
     EXPECT_TRUE(before.slice.empty() || level.slice[p] == before.slice[parent[p]]);
   }
 }
-} // namespace
 
 TEST(TetraCollapseFilter, EveryLevelIsValidWithItsLayersAndASubsetOfThePoints)
 {
@@ -495,3 +494,4 @@ TEST(TetraCollapseFilter, FloatMeshWorks)
   filter->Update();
   EXPECT_TRUE(ValidateMesh(filter->GetOutput()->GetMesh(1)->GetArrays()).IsValid());
 }
+} // namespace TetraCollapseFilterTests

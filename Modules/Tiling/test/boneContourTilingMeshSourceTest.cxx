@@ -18,7 +18,7 @@
 #include <numeric>
 #include <random>
 
-namespace
+namespace ContourTilingMeshSourceTests
 {
 using bone::ContourStack;
 using bone::Loop;
@@ -64,7 +64,6 @@ PolygonShare(int points)
 }
 
 const std::vector<Loop> Shaft = { { { 0, 0 }, 12, 10, 0, 1 }, { { 0, 0 }, 9, 7, 1, 2 }, { { 0, 0 }, 6, 4, 2, 3 } };
-} // namespace
 
 TEST(ContourTilingMeshSource, FillsAFlatCutCylinderExactly)
 {
@@ -502,3 +501,4 @@ TYPED_TEST(ContourTilingMeshSourceOfTypes, FollowsTheDensityAlike)
     EXPECT_NEAR((mesh.points[p] - expected.points[p]).norm(), 0.0, 1e-5);
   }
 }
+} // namespace ContourTilingMeshSourceTests

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace SectionSplitTests
 {
 using bone::Vector2;
 using namespace bone::tiling;
@@ -65,7 +65,6 @@ protected:
   VertexPool m_Pool;
   Section    m_Section;
 };
-} // namespace
 
 TEST_F(SectionSplit, PartsHaveAllTrianglesEachOnce)
 {
@@ -131,3 +130,4 @@ TEST_F(SectionSplit, RefusesWhatHasNoRings)
   EXPECT_FALSE(SplitSection(m_Pool.plane, patch, { Circle(-10, 3), Circle(10, 3) }, {}, cuts, parts));
   EXPECT_FALSE(SplitSection(m_Pool.plane, ring, { Circle(-10, 3), Circle(10, 3) }, {}, cuts, parts));
 }
+} // namespace SectionSplitTests

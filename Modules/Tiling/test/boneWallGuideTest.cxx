@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace
+namespace WallGuideTests
 {
 using bone::Vector2;
 using bone::Vector3;
@@ -192,4 +192,4 @@ TEST(WallGuide, AKnitSaysThatItsWallDeparts)
     EXPECT_EQ(knit.departs, twist > 8) << twist;
   }
 }
-} // namespace
+} // namespace WallGuideTests
