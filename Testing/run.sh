@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds and passes all tests: unit and integration tests of the release build, then the unit
 # tests again under the address and undefined-behaviour sanitizers. Tests that need real data look for it in the folder
-# that BONETK_DATA names, and are skipped where it is not set.
+# that BONETK_DATA names, and are skipped where it is not set. Arguments are ctest's, for the tests of the release build.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 CMake/install-packages.sh || exit 1
@@ -26,7 +26,7 @@ run() {
   total=$((total + ${all:-1}))
 }
 
-run test -j2
+run test -j2 "$@"
 run sanitize -j2
 
 echo
