@@ -22,9 +22,11 @@ Overwrite(std::string & bytes, std::size_t at, T value)
   std::memcpy(&bytes[at], &value, std::min(sizeof(T), bytes.size() - at));
 }
 
-const char * const Words[] = { "1e300",  "-1e300", "nan",  "inf",  "-1", "0",     "4294967296", "99999999999999999999",
-                               "1e-300", "0x10",   "<a>",  "]]",   "[[", "{",     "\"",         "\n",
-                               "%d",     ",",      "LIST", "true", "\\", "null,", "../",        "1e9" };
+const char * const WrongNumbers[] = {
+  "1e300",  "-1e300", "nan",  "inf",  "-1", "0",     "4294967296", "99999999999999999999",
+  "1e-300", "0x10",   "<a>",  "]]",   "[[", "{",     "\"",         "\n",
+  "%d",     ",",      "LIST", "true", "\\", "null,", "../",        "1e9"
+};
 } // namespace
 
 std::string
@@ -119,7 +121,7 @@ Mutator::DamageOnce(std::string & bytes)
       bytes.resize(at);
       return;
     case 8:
-      bytes.insert(at, Words[Below(std::size(Words))]);
+      bytes.insert(at, WrongNumbers[Below(std::size(WrongNumbers))]);
       return;
     default:
     {
@@ -128,7 +130,7 @@ Mutator::DamageOnce(std::string & bytes)
       if (digit != std::string::npos)
       {
         const std::size_t end = std::min(bytes.find_first_not_of("0123456789.", digit), bytes.size());
-        bytes.replace(digit, end - digit, Words[Below(std::size(Words))]);
+        bytes.replace(digit, end - digit, WrongNumbers[Below(std::size(WrongNumbers))]);
       }
     }
   }
