@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace BuildPipelineTests
 {
 using Source = bone::PhantomImageSource<bone::CTImage>;
 
@@ -65,7 +65,6 @@ protected:
   bone::BuildPipeline m_Pipeline{ 2 };
   bone::StageClock    m_Clock{ m_Pipeline.GetStages() };
 };
-} // namespace
 
 TEST_F(BuildPipelineTest, UnchangedPipelineRunsNoStage)
 {
@@ -166,3 +165,4 @@ TEST(BuildPipeline, RecoversThePhantomsNoiseFreeDensity)
   EXPECT_LE(error.meanAbsolutePercent, 3.0);
   EXPECT_GT(error.voxels, 100000U);
 }
+} // namespace BuildPipelineTests

@@ -81,7 +81,7 @@ Rows(const std::vector<Vector3> & points, py::ssize_t width)
 constexpr double NoDensity = std::numeric_limits<double>::quiet_NaN();
 
 py::object
-Evaluate(const py::object & self, const Array<double> & places)
+EvaluateAt(const py::object & self, const Array<double> & places)
 {
   const auto evaluator = GetDensityEvaluator(self);
   const bool one = places.ndim() == 1 && places.size() == 3;
@@ -163,7 +163,7 @@ BindEvaluation(py::class_<Mesh, itk::SmartPointer<Mesh>, itk::DataObject> & mesh
   py::class_<Evaluator, std::shared_ptr<Evaluator>>(mesh, "_Evaluator", py::module_local());
   mesh
     .def("evaluate",
-         &Evaluate,
+         &EvaluateAt,
          py::arg("points"),
          "Density in density units at points (n x 3, or 3 numbers; mm): n numbers, NaN outside the body. Runs in "
          "parallel; what places are looked up in is made at the first call and kept.")
