@@ -35,6 +35,16 @@ function(bonetk_test_settings target)
   bonetk_unity_build(${target} 12)
 endfunction()
 
+# Refuses an unnamed namespace in a test: others that are compiled with it would call what it holds, unseen.
+function(bonetk_check_names)
+  foreach(test IN LISTS ARGN)
+    file(STRINGS ${test} unnamed REGEX "^namespace( *{)?$")
+    if(unnamed)
+      message(FATAL_ERROR "${test}: the namespace needs a name, that of the test with an s.")
+    endif()
+  endforeach()
+endfunction()
+
 # Refuses a dependency against the order of the rooms.
 function(bonetk_check_dependency name dependency)
   if(NOT TARGET bone${dependency})
@@ -108,6 +118,7 @@ function(bonetk_module name)
 
   file(GLOB tests CONFIGURE_DEPENDS test/*Test.cxx)
   if(BUILD_TESTING AND tests)
+    bonetk_check_names(${tests})
     add_executable(${target}Tests ${tests})
     bonetk_test_settings(${target}Tests)
     # Kernels that are not installed are tested too.

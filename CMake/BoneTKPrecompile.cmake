@@ -3,7 +3,7 @@
 # Nine tenths of what a source of BoneTK is compiled from are ITK's image, Eigen and the standard library.
 option(BONETK_PRECOMPILE "Precompile the headers that most sources include" ON)
 # A library's sources and a module's tests are compiled twelve at once, bonetk's all: what they instantiate alike is
-# instantiated once. Names that two tests of a module share stand in a namespace named after the test.
+# instantiated once. A test's names stand in a namespace named after it.
 option(BONETK_UNITY_BUILD "Compile several sources of a library or program at once" ON)
 
 function(bonetk_unity_build target sources)

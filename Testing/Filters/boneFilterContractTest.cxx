@@ -17,7 +17,7 @@ namespace bone
 {
 namespace test
 {
-namespace
+namespace FilterContractTests
 {
 template <typename T>
 void
@@ -340,6 +340,6 @@ TYPED_TEST(Filter, OneAndTwoThreadsGiveTheSame)
   EXPECT_FALSE(BytesOf(*filter).empty());
   EXPECT_EQ(BytesOf(*filter), this->Reference().bytes);
 }
-} // namespace
 } // namespace test
+} // namespace FilterContractTests
 } // namespace bone

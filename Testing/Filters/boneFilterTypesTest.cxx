@@ -15,7 +15,7 @@ namespace bone
 {
 namespace test
 {
-namespace
+namespace FilterTypesTests
 {
 /** The values of an image by `map`, as another type. */
 template <typename TPixel, typename TImage, typename TMap>
@@ -137,6 +137,6 @@ TYPED_TEST(FilterTypes, ImagesAndMasksOfTheRadiograph)
   EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0.0F);
   EXPECT_EQ(Radiograph<TypeParam>(), expected);
 }
-} // namespace
 } // namespace test
+} // namespace FilterTypesTests
 } // namespace bone

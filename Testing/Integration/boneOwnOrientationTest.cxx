@@ -16,7 +16,7 @@
 
 #include <random>
 
-namespace
+namespace OwnOrientationTests
 {
 using namespace bone;
 
@@ -121,7 +121,6 @@ Mirror(Vector3 x, const itk::ImageBase<3> & grid, const std::array<bool, 3> & ax
   }
   return x;
 }
-} // namespace
 
 TEST(OwnOrientation, IsTheSameForAllOrdersOfVoxels)
 {
@@ -229,3 +228,4 @@ TEST(OwnOrientation, AMirroredBoneGivesTheMirroredModel)
     EXPECT_THAT(built.warnings, testing::Contains(testing::HasSubstr("at its " + end + " slice")));
   }
 }
+} // namespace OwnOrientationTests

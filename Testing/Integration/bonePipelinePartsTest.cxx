@@ -23,7 +23,7 @@
 #include <limits>
 #include <random>
 
-namespace
+namespace PipelinePartsTests
 {
 /** Label 3 in the voxels [4, 10) x [5, 9) x [6, 12) of a grid of 0.5 x 1 x 2 mm. */
 bone::LabelImage::Pointer
@@ -68,7 +68,6 @@ MakeBoxMesh(double shift)
   mesh.neighbors = bone::ComputeFaceNeighbors(mesh.tetrahedra);
   return mesh;
 }
-} // namespace
 
 TEST(BoneImage, MeasuresABox)
 {
@@ -470,3 +469,4 @@ TEST(Resolution, EstimateScalesWithTheSquareRoot)
   EXPECT_NEAR(coarse.contourSpacing / fine.contourSpacing, 2.0, 1e-9);
   EXPECT_DOUBLE_EQ(bone::EstimateResolution(20000.0, 3.0, 40000).sliceStep, 3.0);
 }
+} // namespace PipelinePartsTests

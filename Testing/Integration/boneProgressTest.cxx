@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ProgressTests
 {
 using bone::Progress;
 
@@ -15,7 +15,6 @@ Pass(Progress & progress, const std::string & stage)
   double seconds;
   EXPECT_EQ(progress.End(progress.Begin(stage), seconds), stage);
 }
-} // namespace
 
 TEST(Progress, StagesCountByTheirSeconds)
 {
@@ -96,3 +95,4 @@ TEST(Progress, RunsNestAndTellTheirSeconds)
   EXPECT_EQ(progress.GetStage(), "outer");
   EXPECT_EQ(progress.End(outer, seconds), "outer");
 }
+} // namespace ProgressTests

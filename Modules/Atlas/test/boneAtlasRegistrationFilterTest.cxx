@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace AtlasRegistrationFilterTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -76,7 +76,6 @@ MeanDistance(const std::vector<Vector3> & a, const std::vector<Vector3> & b)
   }
   return sum;
 }
-} // namespace
 
 TEST(AtlasRegistrationFilter, FindsTheStandardItselfInAnyPose)
 {
@@ -394,3 +393,4 @@ TEST(FitFacets, LeavesASurfaceThatLiesOnTheTarget)
   EXPECT_LT(MeanDistance(surface.points, points),
             0.005); // none but at the sharp edges of the ends, where normals differ
 }
+} // namespace AtlasRegistrationFilterTests

@@ -9,7 +9,7 @@
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 
-namespace
+namespace ModelEvaluationTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -35,7 +35,6 @@ PassOver(const std::vector<MeshArrays> & subjects)
     }
   };
 }
-} // namespace
 
 TEST(ModelEvaluation, ErrorsFallWithModesToTheNoise)
 {
@@ -139,3 +138,4 @@ TEST(ModelEvaluation, StandardErrorOfKnownValues)
   EXPECT_NEAR(summary.mean, 2.5, 1e-15);
   EXPECT_NEAR(summary.standardError, std::sqrt(5.0 / 3.0 / 4.0), 1e-12);
 }
+} // namespace ModelEvaluationTests

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace
+namespace SmoothModesTests
 {
 using namespace bone;
 
@@ -149,4 +149,4 @@ TEST(ResidualModes, HaveTheVarianceOfTheSubjects)
     EXPECT_LT((found.modes.transpose() * shift).norm(), 1e-9);
   }
 }
-} // namespace
+} // namespace SmoothModesTests

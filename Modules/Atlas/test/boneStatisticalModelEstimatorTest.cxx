@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace StatisticalModelEstimatorTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -71,7 +71,6 @@ ExpectReproduced(const StatisticalModel * model, const std::vector<MeshArrays> &
     }
   }
 }
-} // namespace
 
 TEST(StatisticalModelEstimator, ReproducesTheTrainingSetAtFullRank)
 {
@@ -234,8 +233,6 @@ TEST(StatisticalModelEstimator, StreamedBlocksGiveTheSameModel)
   EXPECT_LT((a.modes - b.modes).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-namespace
-{
 /** Subjects whose densities vary in as many patterns as there are cells, each a tenth less than the one before. */
 std::vector<MeshArrays>
 MakeManifold(unsigned count)
@@ -260,7 +257,6 @@ MakeManifold(unsigned count)
   }
   return subjects;
 }
-} // namespace
 
 TEST(StatisticalModelEstimator, LeadingModesHoldWhereMemoryDoesNot)
 {
@@ -299,8 +295,6 @@ TEST(StatisticalModelEstimator, ShapesThatDoNotFitAreReadAgain)
   EXPECT_LT((a.shapeScores - b.shapeScores).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-namespace
-{
 /** The model of the first subjects, and the others added to it. */
 Estimator::Pointer
 EstimateInTwoSteps(
@@ -324,7 +318,6 @@ EstimateInTwoSteps(
   estimator->Update();
   return estimator;
 }
-} // namespace
 
 TEST(StatisticalModelEstimator, SubjectsAddedToAModelOfFullRankGiveTheModelOfAll)
 {
@@ -566,3 +559,4 @@ TEST(StatisticalModelEstimator, AChangedMeshOfATrainingSetMakesTheModelAnew)
   estimator->Update();
   EXPECT_GT(estimator->GetOutput()->GetMTime(), time);
 }
+} // namespace StatisticalModelEstimatorTests

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace
+namespace SubjectEvaluationTests
 {
 using namespace bone;
 
@@ -100,4 +100,4 @@ TEST(SubjectEvaluation, RefusesAnotherTopologyOrDegree)
   mesh.coefficients.clear();
   EXPECT_FALSE(EvaluateSubject(atlas, mesh).hasDensity);
 }
-} // namespace
+} // namespace SubjectEvaluationTests

@@ -9,7 +9,7 @@
 
 namespace bone
 {
-namespace
+namespace BodyLabelsTests
 {
 /** 900 HU where there is bone, 0 elsewhere, on 30 x 30 mm from the origin. */
 PlaneField
@@ -77,5 +77,5 @@ TEST(BodyLabels, WhatOpensToTheImagesBorderDoesNotThoughTheBodyHadIt)
     EXPECT_NEAR(AreaOfHollowBlock(-1.0, border), 350 - 90, 10) << border;
   }
 }
-} // namespace
+} // namespace BodyLabelsTests
 } // namespace bone

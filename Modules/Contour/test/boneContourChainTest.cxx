@@ -11,7 +11,7 @@
 
 namespace bone
 {
-namespace
+namespace ContourChainTests
 {
 using Snake = SnakeContourFilter<TestCT>;
 
@@ -129,7 +129,6 @@ FarAndOblique()
 {
   return { Eigen::AngleAxisd(2.1, Vector3(1, -2, 0.5).normalized()).toRotationMatrix(), { 420.0, -310.0, 1250.0 } };
 }
-} // namespace
 
 TEST(ContourChain, FromALabelMovesWithARigidMotion)
 {
@@ -144,4 +143,5 @@ TEST(ContourChain, FromOneContourMovesWithARigidMotion)
   Chain moved = FromOneContour(FarAndOblique());
   ExpectMoved(still.Run(), moved.Run(), FarAndOblique());
 }
+} // namespace ContourChainTests
 } // namespace bone

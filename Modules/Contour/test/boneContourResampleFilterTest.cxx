@@ -14,7 +14,7 @@
 
 namespace bone
 {
-namespace
+namespace ContourResampleFilterTests
 {
 using testing::HasSubstr;
 
@@ -376,5 +376,5 @@ TEST(ContourResampleFilter, RefusesBadInput)
   auto empty = Resampler(ContourStack::New(), 4.0);
   EXPECT_THAT(MessageOf([&] { empty->Update(); }), HasSubstr("no contour"));
 }
-} // namespace
+} // namespace ContourResampleFilterTests
 } // namespace bone

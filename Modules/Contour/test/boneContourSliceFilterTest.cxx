@@ -11,7 +11,7 @@
 
 namespace bone
 {
-namespace
+namespace ContourSliceFilterTests
 {
 using testing::HasSubstr;
 
@@ -143,5 +143,5 @@ TEST(ContourSliceFilter, SaysWhatIsWrong)
   filter->SetMaximumGap(0.5);
   EXPECT_THAT(message(), HasSubstr("MaximumGap"));
 }
-} // namespace
+} // namespace ContourSliceFilterTests
 } // namespace bone

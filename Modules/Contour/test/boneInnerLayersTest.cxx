@@ -11,7 +11,7 @@
 
 namespace bone
 {
-namespace
+namespace InnerLayersTests
 {
 constexpr double Cortex = 2.0;
 
@@ -172,5 +172,5 @@ TEST(BoneLayers, EndostealContoursMustLastForTheLengthWhereverTheBoneLies)
     }
   }
 }
-} // namespace
+} // namespace InnerLayersTests
 } // namespace bone

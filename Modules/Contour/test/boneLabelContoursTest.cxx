@@ -9,7 +9,7 @@
 
 namespace bone
 {
-namespace
+namespace LabelContoursTests
 {
 template <typename TFunction>
 std::vector<unsigned char>
@@ -234,5 +234,5 @@ TEST(Section, InnerContoursMustLast)
     EXPECT_TRUE(inner.empty() || inner[0][0].x() < 0.0) << k;
   }
 }
-} // namespace
+} // namespace LabelContoursTests
 } // namespace bone

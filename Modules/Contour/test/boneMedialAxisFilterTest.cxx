@@ -14,7 +14,7 @@
 
 namespace bone
 {
-namespace
+namespace MedialAxisFilterTests
 {
 Polygon
 Rectangle(double width, double height, double rounding)
@@ -264,5 +264,5 @@ TEST(MedialAxisFilter, RefusesBadParameters)
   filter->SetSignificance(0.0);
   EXPECT_THAT(MessageOf([&] { filter->Update(); }), testing::HasSubstr("Significance"));
 }
-} // namespace
+} // namespace MedialAxisFilterTests
 } // namespace bone

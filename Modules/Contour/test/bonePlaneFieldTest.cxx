@@ -12,7 +12,7 @@
 
 namespace bone
 {
-namespace
+namespace PlaneFieldTests
 {
 PlaneGrid
 Grid(int nx, int ny, const Vector2 & spacing)
@@ -141,5 +141,5 @@ TEST(PlaneField, SmoothingAddsItsVarianceToAQuadraticField)
     EXPECT_NEAR(field.SampleCubic(middle), 1.2 * 1.2 * bend.sum(), 0.05 * bend.sum());
   }
 }
-} // namespace
+} // namespace PlaneFieldTests
 } // namespace bone

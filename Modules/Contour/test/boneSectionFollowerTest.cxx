@@ -10,7 +10,7 @@
 
 namespace bone
 {
-namespace
+namespace SectionFollowerTests
 {
 using testing::HasSubstr;
 
@@ -193,5 +193,5 @@ TEST(SectionFollower, MarrowStaysWithinAForamenIsAHole)
   ASSERT_EQ(follow.Pieces(20), 1u);
   EXPECT_EQ(follow.sections[20].pieces[0].holes.size(), 1u);
 }
-} // namespace
+} // namespace SectionFollowerTests
 } // namespace bone

@@ -12,7 +12,7 @@
 
 namespace bone
 {
-namespace
+namespace SnakeContourFilterTests
 {
 using testing::HasSubstr;
 using Filter = SnakeContourFilter<TestCT>;
@@ -396,5 +396,5 @@ TYPED_TEST(SnakeContourFilterTypes, LabelAndCTOfAnyScalarGiveTheSameContours)
     }
   }
 }
-} // namespace
+} // namespace SnakeContourFilterTests
 } // namespace bone

@@ -12,7 +12,7 @@
 
 namespace bone
 {
-namespace
+namespace SnakeTests
 {
 // A blurred disk (or ring) of radius r at c.
 PlaneField
@@ -146,5 +146,5 @@ TEST(Snake, UniformResamplingKeepsLengthAndSpacing)
   EXPECT_NEAR(high, 0.5, 0.01);
   EXPECT_GT(low, 0.47);
 }
-} // namespace
+} // namespace SnakeTests
 } // namespace bone

@@ -10,7 +10,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace BernsteinTests
 {
 using namespace bone;
 
@@ -308,4 +308,4 @@ TEST(Barycentric, CoordinatesReproduceThePoint)
     EXPECT_LT((BarycentricCoordinates(x, A, B, C, D) - mu).norm(), 1e-13);
   }
 }
-} // namespace
+} // namespace BernsteinTests

@@ -10,7 +10,7 @@
 
 using namespace bone;
 
-namespace
+namespace ContourShapeTests
 {
 constexpr int Around = 256;
 
@@ -49,7 +49,6 @@ Cone()
   stack->SetSlices(slices);
   return ContourShape(*stack);
 }
-} // namespace
 
 TEST(ContourShape, IsTheDistanceOnSlicesAndLinearBetween)
 {
@@ -141,3 +140,4 @@ TEST(ContourShape, IsUnknownBeyondTheSlicesAndWithoutTheLevel)
   EXPECT_FALSE(shape.Evaluate(0, { 0, 0, 1 }));
   EXPECT_FALSE(ContourShape(*ContourStack::New()).Evaluate(1, { 0, 0, 0 }));
 }
+} // namespace ContourShapeTests

@@ -15,7 +15,7 @@
 
 namespace bone
 {
-namespace
+namespace ContourStackTests
 {
 using testing::HasSubstr;
 
@@ -219,5 +219,5 @@ TEST(ContourStack, GraftCopiesAndRefusesOtherTypes)
   copy->Initialize();
   EXPECT_TRUE(copy->GetSlices().empty());
 }
-} // namespace
+} // namespace ContourStackTests
 } // namespace bone

@@ -10,7 +10,7 @@
 
 namespace bone
 {
-namespace
+namespace CorticalProfileTests
 {
 // 1 well beyond depth 0, 0 well before, blurred by a Gaussian.
 double
@@ -98,5 +98,5 @@ TEST(CorticalProfile, SaysWhereThereIsNoEnd)
   const CorticalEdges edges = FindCorticalEdges(Profile(4.0, 0.4, 50.0), rules);
   EXPECT_NEAR(edges.inner, 4.0, 0.1);
 }
-} // namespace
+} // namespace CorticalProfileTests
 } // namespace bone

@@ -13,7 +13,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace DensityEvaluationTests
 {
 using namespace bone;
 
@@ -250,4 +250,4 @@ TEST(DensityProfile, OfALinearDensityIsThatLineInsideAndNothingOutside)
   EXPECT_LT(inside, profile.size());
   EXPECT_THROW(DensityProfile(mesh, locator, from, to, 1), std::invalid_argument);
 }
-} // namespace
+} // namespace DensityEvaluationTests

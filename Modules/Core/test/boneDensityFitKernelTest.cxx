@@ -10,7 +10,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace DensityFitKernelTests
 {
 using namespace bone;
 
@@ -201,4 +201,4 @@ TEST(DensityFitKernel, ChoosesDenserPatternsForMorePointsWithinItsLimits)
   EXPECT_EQ(DensityFitKernel::LatticeWithPoints(3, 287, 20), 11);
   EXPECT_EQ(DensityFitKernel::LatticeWithPoints(3, 1e9, 20), 20);
 }
-} // namespace
+} // namespace DensityFitKernelTests

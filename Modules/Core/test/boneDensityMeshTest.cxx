@@ -13,7 +13,7 @@
 
 namespace bone
 {
-namespace
+namespace DensityMeshTests
 {
 using testing::HasSubstr;
 
@@ -49,7 +49,6 @@ ErrorOf(TChange && change)
   }
   return "no exception was thrown";
 }
-} // namespace
 
 template <typename TCoordinate>
 class DensityMeshTest : public testing::Test
@@ -199,4 +198,5 @@ TEST(DensityHierarchy, PicksTheLevelThatIsJustGoodEnough)
   geometry->SetView(view);
   EXPECT_EQ(hierarchy->PickByPixelSize(*geometry), 2u);
 }
+} // namespace DensityMeshTests
 } // namespace bone

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace
+namespace ExecutionTests
 {
 /** A process object that keeps the progress it reported. */
 class Recorder : public itk::ProcessObject
@@ -140,4 +140,4 @@ TEST(Execution, RunsOnAsManyWorkUnitsAsTheFilter)
   execution.For(1000, [&](std::size_t) { elsewhere = elsewhere || std::this_thread::get_id() != caller; });
   EXPECT_FALSE(elsewhere);
 }
-} // namespace
+} // namespace ExecutionTests

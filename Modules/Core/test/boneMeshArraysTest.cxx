@@ -11,7 +11,7 @@
 
 namespace bone
 {
-namespace
+namespace MeshArraysTests
 {
 using Triangle = std::array<IdType, 3>;
 using testing::ElementsAre;
@@ -40,7 +40,6 @@ EnclosedVolume(const std::vector<Vector3> & points, const std::vector<Triangle> 
   }
   return volume;
 }
-} // namespace
 
 TEST(MeshArrays, TetraFacesLookOutward)
 {
@@ -121,4 +120,5 @@ TEST(MeshArrays, DensityQuantitiesHaveNames)
   EXPECT_EQ(DensityQuantityName(DensityQuantity::AshGramPerCubicCentimetre), "ash g/cm3");
   EXPECT_EQ(DensityQuantityName(static_cast<DensityQuantity>(99)), "unknown");
 }
+} // namespace MeshArraysTests
 } // namespace bone

@@ -16,7 +16,7 @@
 
 namespace bone
 {
-namespace
+namespace MeshValidatorTests
 {
 using testing::HasSubstr;
 
@@ -111,7 +111,6 @@ SetRegions(MeshArrays & mesh, TInner && inner)
 }
 
 using Names = std::set<std::string>;
-} // namespace
 
 TEST(MeshValidator, AcceptsAMeshOfCubesAndListsItsChecksInOrder)
 {
@@ -410,4 +409,5 @@ TEST(MeshValidator, ResultDoesNotDependOnNumbering)
   EXPECT_EQ(before.boundaryEuler, after.boundaryEuler);
   EXPECT_FALSE(before.IsValid());
 }
+} // namespace MeshValidatorTests
 } // namespace bone

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace OrthonormalBasisTests
 {
 using namespace bone;
 
@@ -88,4 +88,4 @@ TEST(OrthonormalBasis, RefusesDegreesItDoesNotHave)
   EXPECT_THROW(BernsteinReduce(0, x, 1, x), std::out_of_range);
   EXPECT_THROW(BernsteinDamping(2, 3), std::out_of_range);
 }
-} // namespace
+} // namespace OrthonormalBasisTests

@@ -10,7 +10,7 @@
 
 using namespace bone;
 
-namespace
+namespace ParametersTests
 {
 // clang-format off
 #define BONE_TABLE_OF_THE_TEST(value, flag) \
@@ -47,7 +47,6 @@ IsOutOfDateAfter(ProcessOfTheTest & process, TChange change)
   change(process);
   return process.GetMTime() > before;
 }
-} // namespace
 
 TEST(Parameters, AnotherValueMakesTheFilterOutOfDateAndTheSameDoesNot)
 {
@@ -107,3 +106,4 @@ TEST(ParameterRange, ALengthIsAtLeastAMicrometre)
   EXPECT_TRUE(ParameterRange::LengthOrZero().Contains(0.001));
   EXPECT_FALSE(ParameterRange::Length().Contains(0));
 }
+} // namespace ParametersTests

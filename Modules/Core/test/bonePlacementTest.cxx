@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace
+namespace PlacementTests
 {
 using namespace bone;
 
@@ -126,4 +126,4 @@ TEST(Placement, TheFilterRunsAgainWhereThePlacementChangesOnly)
   EXPECT_GT(filter->GetOutput()->GetUpdateMTime(), time);
   EXPECT_EQ(filter->GetOutput()->GetSlices()[0].contours[0].points[0], Placements()[1].origin);
 }
-} // namespace
+} // namespace PlacementTests

@@ -13,7 +13,7 @@
 
 namespace bone
 {
-namespace
+namespace PredicatesTests
 {
 __extension__ typedef __int128 Wide;
 
@@ -62,7 +62,6 @@ ToVector(const std::array<std::int64_t, 2> & p)
 {
   return Vector2(static_cast<double>(p[0]), static_cast<double>(p[1]));
 }
-} // namespace
 
 TEST(Predicates, Orient3DIsPositiveForTheUnitTetrahedron)
 {
@@ -198,4 +197,5 @@ TEST(Predicates, InCircleAgreesWithWholeNumbers)
   EXPECT_EQ(InCircle2D({ 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 }), 0);
   EXPECT_EQ(InCircle2D({ 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1.5 }), -1);
 }
+} // namespace PredicatesTests
 } // namespace bone

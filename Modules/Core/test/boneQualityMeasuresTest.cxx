@@ -11,7 +11,7 @@
 
 using namespace bone;
 
-namespace
+namespace QualityMeasuresTests
 {
 const Vector3 A(1, 1, 1), B(-1, 1, -1), C(1, -1, -1), D(-1, -1, 1);
 
@@ -21,7 +21,6 @@ Regular()
 {
   return SignedVolume(A, B, C, D) > 0 ? std::array<Vector3, 4>{ A, B, C, D } : std::array<Vector3, 4>{ A, C, B, D };
 }
-} // namespace
 
 TEST(QualityMeasures, RegularTetrahedronIsPerfect)
 {
@@ -119,3 +118,4 @@ TEST(QualityMeasures, CountsInvertedCellsExactly)
   std::swap(mesh.tetrahedra[7][2], mesh.tetrahedra[7][3]);
   EXPECT_EQ(CountInverted(mesh), 2u);
 }
+} // namespace QualityMeasuresTests

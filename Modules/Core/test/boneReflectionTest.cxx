@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ReflectionTests
 {
 using namespace bone;
 
@@ -63,4 +63,4 @@ TEST(Reflection, TheDensityIsReflectedToo)
     EXPECT_NEAR(value(mirror, 1, Vector3(-x[0], x[1], -x[2])), value(mesh, 1, Vector3(x[0], x[1], -x[2])), 1e-12);
   }
 }
-} // namespace
+} // namespace ReflectionTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace SparseCholeskyTests
 {
 /** A chain of springs held at both ends and, `far` apart, tied together; every element comes as two halves. */
 std::vector<bone::SparseEntry>
@@ -48,7 +48,6 @@ ExpectSolves(bone::SparseCholesky & factor, Eigen::Index size, const std::vector
   const Eigen::MatrixXd product = dense.selfadjointView<Eigen::Lower>() * factor.Solve(right);
   EXPECT_LT((product - right).norm(), 1e-10);
 }
-} // namespace
 
 TEST(SparseCholesky, SolvesOneMatrixAfterAnother)
 {
@@ -65,3 +64,4 @@ TEST(SparseCholesky, SaysThatAMatrixHasNoFactor)
   EXPECT_FALSE(factor.Factorize(2, { { 0, 0, 1.0 }, { 1, 0, 1.0 }, { 1, 1, 1.0 } }));
   ExpectSolves(factor, 2, { { 0, 0, 1.0 }, { 1, 0, 1.0 }, { 1, 1, 2.0 } });
 }
+} // namespace SparseCholeskyTests

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace StatisticalModelTests
 {
 bone::PrincipalModes
 RandomModes(Eigen::Index d, Eigen::Index k)
@@ -22,7 +22,6 @@ RandomModes(Eigen::Index d, Eigen::Index k)
   model.totalVariance = model.variances.sum();
   return model;
 }
-} // namespace
 
 TEST(PrincipalModes, SampleYieldsItsCoefficients)
 {
@@ -135,3 +134,4 @@ TEST(StatisticalModel, RefusesContentThatDoesNotMatch)
   graft->Graft(model);
   EXPECT_EQ(graft->GetContent().shape.GetNumberOfModes(), 4);
 }
+} // namespace StatisticalModelTests

@@ -17,7 +17,7 @@
 
 using namespace bone;
 
-namespace
+namespace TetraComplexTests
 {
 std::array<int, 4>
 CountDimensions(const SurfaceComplex & complex)
@@ -48,7 +48,6 @@ Bipyramid(double lower, double upper)
   test::MakePositive(mesh);
   return mesh;
 }
-} // namespace
 
 TEST(TetraComplex, HasTheBoundaryOfItsMesh)
 {
@@ -490,3 +489,4 @@ TEST(TetraComplex, NoCollapseLeavesAStratum)
     }
   }
 }
+} // namespace TetraComplexTests

@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace TetraLocatorTests
 {
 using namespace bone;
 
@@ -217,4 +217,4 @@ TEST(TetraLocator, TakesAnEmptyMeshAndRefusesPointsThatAreNotFinite)
   mesh.points[3][1] = std::nan("");
   EXPECT_THROW(TetraLocator{ mesh }, std::invalid_argument);
 }
-} // namespace
+} // namespace TetraLocatorTests

@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace
+namespace XRayConventionsTests
 {
 using namespace bone;
 using View = XRayGeometry::View;
@@ -66,7 +66,6 @@ ExpectSameView(const View & a, const View & b)
   EXPECT_TRUE(a.detectorU.isApprox(b.detectorU, 1e-9));
   EXPECT_TRUE(a.detectorV.isApprox(b.detectorV, 1e-9));
 }
-} // namespace
 
 TEST(XRayConventions, APixelsPointProjectsToItAndSoDoAllPointsOfItsRay)
 {
@@ -300,3 +299,4 @@ TEST(XRayConventions, RefusesACArmThatCannotBe)
   }
   EXPECT_NO_THROW(FromCArm(CArmView()));
 }
+} // namespace XRayConventionsTests

@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace
+namespace XRayGeometryTests
 {
 using bone::Vector3;
 using bone::XRayGeometry;
@@ -20,7 +20,6 @@ Changed(void (*change)(XRayGeometry::View &))
   change(view);
   return view;
 }
-} // namespace
 
 TEST(XRayGeometry, TheDefaultViewIsUsable)
 {
@@ -147,3 +146,4 @@ TEST(XRayGeometry, GraftCopiesTheView)
   to->Graft(from);
   EXPECT_EQ(to->GetView().size[1], 9);
 }
+} // namespace XRayGeometryTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace CellVoxelsTests
 {
 using namespace bone;
 
@@ -50,4 +50,4 @@ TEST(CellVoxels, SharedFacesBelongToBothSidesAndFlatTetrahedraHaveNone)
   FindCellVoxels(vertices, { { 4, 4, 4 } }, voxels);
   EXPECT_TRUE(voxels.empty());
 }
-} // namespace
+} // namespace CellVoxelsTests

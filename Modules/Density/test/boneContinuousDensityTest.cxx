@@ -13,7 +13,7 @@
 #include <cmath>
 #include <map>
 
-namespace
+namespace ContinuousDensityTests
 {
 using namespace bone;
 
@@ -157,4 +157,4 @@ TEST(ContinuousDensity, RefusesMixedDegreesDegreeZeroAndInvertedCells)
   std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
   EXPECT_THROW(MakeDensityContinuous(mesh, bone::Execution()), std::invalid_argument);
 }
-} // namespace
+} // namespace ContinuousDensityTests

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace ContinuousGradientTests
 {
 using namespace bone;
 
@@ -316,4 +316,4 @@ TEST(ContinuousGradient, RefusesFlatCellsAndOtherMeshesAndDegrees)
   split.degree[7] = 2;
   EXPECT_THROW(MakeGradientContinuous(mesh, split, Execution()), std::invalid_argument);
 }
-} // namespace
+} // namespace ContinuousGradientTests

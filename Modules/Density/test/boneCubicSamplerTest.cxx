@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace CubicSamplerTests
 {
 using namespace bone;
 
@@ -57,4 +57,4 @@ TEST(CubicSampler, ConstantsStayAndSmallBlocksWork)
   }
   EXPECT_THROW(CubicSampler({ 1.0F }, { { 2, 1, 1 } }), std::invalid_argument);
 }
-} // namespace
+} // namespace CubicSamplerTests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace DensityCalibrationFilterTests
 {
 using namespace bone;
 using Filter = DensityCalibrationFilter<>;
@@ -85,7 +85,6 @@ struct RodPhantom
   test::Image::Pointer                    image;
   itk::SmartPointer<itk::Image<short, 3>> labels;
 };
-} // namespace
 
 TEST(DensityCalibrationFilter, AGivenLineThenLawsInOrder)
 {
@@ -249,3 +248,4 @@ TEST(DensityCalibrationFilter, RunsAgainOnlyOnChange)
   EXPECT_GT(filter->GetOutput()->GetMTime(), time);
   EXPECT_NEAR(Mean(*filter), 101.0, 1e-12);
 }
+} // namespace DensityCalibrationFilterTests

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace DensityCalibrationTests
 {
 using namespace bone;
 
@@ -139,4 +139,4 @@ TEST(MeasureReference, FindsARodOnAnObliqueImage)
   EXPECT_LT(MeasureReference(*image, { from, to, 6.0 }).mean, 150);
   EXPECT_EQ(MeasureReference(*image, { Vector3(500, 0, 0), Vector3(500, 0, 9), 3.0 }).voxels, 0u);
 }
-} // namespace
+} // namespace DensityCalibrationTests

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace
+namespace DensityFitFilterTests
 {
 using namespace bone;
 using DoubleFit = DensityFitFilter<test::DoubleImage>;
@@ -655,4 +655,4 @@ TEST(DensityFitFilter, PrintsItsParameters)
   EXPECT_NE(text.str().find("Degree: 3"), std::string::npos);
   EXPECT_NE(text.str().find("Quantity: hu"), std::string::npos);
 }
-} // namespace
+} // namespace DensityFitFilterTests

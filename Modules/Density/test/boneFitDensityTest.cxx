@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace
+namespace FitDensityTests
 {
 using namespace bone;
 
@@ -56,7 +56,6 @@ PlainParameters(int degree)
   parameters.tikhonov = 0.0;
   return parameters;
 }
-} // namespace
 
 TEST(FitDensity, VoxelsCountBesideSamplesByTheirNumberAVolume)
 {
@@ -108,3 +107,4 @@ TEST(FitDensity, OutsideBeginsHalfAVoxelBeyondTheCentres)
   EXPECT_GT(outside(-0.5, 12.0), 0u);
   EXPECT_GT(outside(-3.0, 9.5), 0u);
 }
+} // namespace FitDensityTests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace LinearSamplerTests
 {
 using namespace bone;
 
@@ -50,4 +50,4 @@ TEST(LinearSampler, TakesAnImageOneVoxelThick)
   EXPECT_EQ(LinearSampler<float>(voxels.data(), { { 2, 1, 1 } })({ 0.5, 0.3, -0.2 }), 15);
   EXPECT_EQ(LinearSampler<float>(voxels.data(), { { 1, 1, 2 } })({ 0, 0, 0.25 }), 12.5);
 }
-} // namespace
+} // namespace LinearSamplerTests

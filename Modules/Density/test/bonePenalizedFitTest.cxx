@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace
+namespace PenalizedFitTests
 {
 using namespace bone;
 
@@ -82,4 +82,4 @@ TEST(PenalizedFit, RefusesPenaltiesThatDoNotHoldIt)
   EXPECT_THROW(PenalizedFit(1, { 1.0 }), std::invalid_argument);
   EXPECT_THROW(PenalizedFit(1, { 1.0, 0.0 }), std::invalid_argument);
 }
-} // namespace
+} // namespace PenalizedFitTests

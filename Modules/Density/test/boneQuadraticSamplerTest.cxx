@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace
+namespace QuadraticSamplerTests
 {
 using namespace bone;
 
@@ -106,4 +106,4 @@ TEST(QuadraticSampler, StaysBetweenTheVoxelsAround)
     EXPECT_LE(sampler(place), 800);
   }
 }
-} // namespace
+} // namespace QuadraticSamplerTests

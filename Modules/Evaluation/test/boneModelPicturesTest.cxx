@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ModelPicturesTests
 {
 using namespace bone;
 
@@ -51,4 +51,4 @@ TEST(DrawShapeModes, LettersAreLeftOutWhereTheModelHasNoPatientsAxes)
   };
   EXPECT_GT(white(true), white(false));
 }
-} // namespace
+} // namespace ModelPicturesTests

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace PicturesTests
 {
 using namespace bone;
 
@@ -158,4 +158,4 @@ TEST(DrawComparison, DrawsTheReferenceOnce)
   EXPECT_EQ(size(5).x(), size(4).x());
   EXPECT_GT(size(5).y(), 1.6 * size(4).y());
 }
-} // namespace
+} // namespace PicturesTests

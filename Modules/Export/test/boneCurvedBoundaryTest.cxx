@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace CurvedBoundaryTests
 {
 using namespace bone;
 
@@ -195,4 +195,4 @@ TEST(CurvedBoundary, FourNodesAreRefused)
   auto model = MakeFiniteElements(mesh, FindElasticityLaw("keyak1998"), parameters);
   EXPECT_THROW(CurveBoundary(Sphere(mesh, 1.0), model), std::invalid_argument);
 }
-} // namespace
+} // namespace CurvedBoundaryTests

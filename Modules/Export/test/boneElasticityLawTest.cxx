@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace ElasticityLawTests
 {
 using namespace bone;
 
@@ -71,4 +71,4 @@ TEST(ElasticityLaw, AnUnknownNameIsAnsweredWithTheNames)
     EXPECT_THAT(error.what(), testing::HasSubstr("morgan2003-neck, "));
   }
 }
-} // namespace
+} // namespace ElasticityLawTests

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace
+namespace FiniteElementIOTests
 {
 using namespace bone;
 using testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(FiniteElementIO, RefusesAnotherExtensionAndModuliThatTheFormatCannotHold)
     EXPECT_FALSE(std::filesystem::exists(file));
   }
 }
-} // namespace
+} // namespace FiniteElementIOTests

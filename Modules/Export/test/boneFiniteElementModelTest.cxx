@@ -13,7 +13,7 @@
 #include <numeric>
 #include <set>
 
-namespace
+namespace FiniteElementModelTests
 {
 using namespace bone;
 using testing::HasSubstr;
@@ -417,4 +417,4 @@ TEST(FiniteElementModel, RefusesWhatGivesNoModelAndSaysWhy)
   mesh = Rod(1, Wave);
   EXPECT_THAT(ErrorOf([&] { MakeFiniteElements(mesh, law, parameters); }), HasSubstr("PoissonRatio"));
 }
-} // namespace
+} // namespace FiniteElementModelTests

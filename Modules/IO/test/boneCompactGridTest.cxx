@@ -22,7 +22,7 @@ namespace bone
 {
 using testing::HasSubstr;
 
-namespace
+namespace CompactGridTests
 {
 MeshStorageParameters
 Compact(double error)
@@ -84,7 +84,6 @@ ErrorOfReading(vtkUnstructuredGrid * grid)
   }
   return "";
 }
-} // namespace
 
 using CompactGridTest = FileTest;
 
@@ -295,4 +294,5 @@ TEST_F(CompactGridTest, AHierarchyTakesLessSpace)
   const auto back = ReadHierarchy(Path("compact.hierarchy.json"))->GetLevels()[0].mesh->GetArrays();
   EXPECT_LE(LargestDifference(back.coefficients, mesh.coefficients), 1.0 + 1e-9);
 }
+} // namespace CompactGridTests
 } // namespace bone

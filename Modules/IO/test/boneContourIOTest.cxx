@@ -14,7 +14,7 @@ namespace bone
 using testing::AllOf;
 using testing::HasSubstr;
 
-namespace
+namespace ContourIOTests
 {
 std::vector<Vector2>
 Circle(double x, double y, double radius, int n)
@@ -120,7 +120,6 @@ Markups(const std::string & system, const std::string & type, const std::vector<
   text << "]}]}";
   return text.str();
 }
-} // namespace
 
 class ContourIOTest : public FileTest
 {
@@ -320,4 +319,5 @@ TEST_F(ContourIOTest, AWriteThatFailsLeavesNothing)
               HasSubstr("cannot write"));
   EXPECT_THAT(Files(), testing::IsEmpty());
 }
+} // namespace ContourIOTests
 } // namespace bone

@@ -7,7 +7,7 @@
 
 namespace bone
 {
-namespace
+namespace CorrespondenceIOTests
 {
 using testing::HasSubstr;
 using CorrespondenceIOTest = FileTest;
@@ -44,5 +44,5 @@ TEST_F(CorrespondenceIOTest, SaysWhatIsWrong)
               HasSubstr("whole numbers"));
   EXPECT_THAT(message(R"({"slabs": [{"slice": 1, "groups": [{"lower": []}]}]})"), HasSubstr("'upper'"));
 }
-} // namespace
+} // namespace CorrespondenceIOTests
 } // namespace bone

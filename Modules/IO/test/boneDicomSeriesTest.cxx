@@ -12,7 +12,7 @@ namespace bone
 {
 using testing::HasSubstr;
 
-namespace
+namespace DicomSeriesTests
 {
 // One CT slice of 6 x 5 pixels, 0.5 x 0.5 mm, whose pixels all have the given value.
 void
@@ -44,7 +44,6 @@ WriteSlice(const std::string & path, double x, double z, short value, const std:
   writer->SetFileName(path);
   writer->Update();
 }
-} // namespace
 
 class DicomSeriesTest : public FileTest
 {
@@ -174,4 +173,5 @@ TEST_F(DicomSeriesTest, RefusesSeveralSeriesOneSliceAndNone)
   WriteSlice(Path("1.dcm"), 0, 1, 0, "2");
   EXPECT_THAT(ErrorOfReading(), HasSubstr("holds single DICOM images"));
 }
+} // namespace DicomSeriesTests
 } // namespace bone

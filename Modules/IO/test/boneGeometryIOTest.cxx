@@ -12,7 +12,7 @@ namespace bone
 using testing::AllOf;
 using testing::HasSubstr;
 
-namespace
+namespace GeometryIOTests
 {
 XRayGeometry::Pointer
 MakeView(bool parallel, double angle)
@@ -45,7 +45,6 @@ ExpectSame(const XRayGeometry::View & a, const XRayGeometry::View & b)
   EXPECT_EQ(a.size, b.size);
   EXPECT_EQ(a.spacing, b.spacing);
 }
-} // namespace
 
 class GeometryIOTest : public FileTest
 {
@@ -117,8 +116,6 @@ TEST_F(GeometryIOTest, SaysWhichMemberIsMissingUnknownOrWrong)
   EXPECT_THAT(ErrorOfReading("[{" + m_Good + "}, {}]"), AllOf(HasSubstr("view 2"), HasSubstr("is missing")));
 }
 
-namespace
-{
 /** A view of plastimatch's handedness, the detector before the source. */
 XRayGeometry::Pointer
 MakeUsualView(double angle)
@@ -146,7 +143,6 @@ ExpectClose(const XRayGeometry & a, const XRayGeometry & b)
     EXPECT_NEAR((a.GetPixelPoint(pixel[0], pixel[1]) - b.GetPixelPoint(pixel[0], pixel[1])).norm(), 0, 1e-8);
   }
 }
-} // namespace
 
 TEST_F(GeometryIOTest, OtherConventionsComeBack)
 {
@@ -222,4 +218,5 @@ TEST_F(GeometryIOTest, AWriteThatFailsLeavesNothing)
               HasSubstr("cannot write"));
   EXPECT_THAT(Files(), testing::IsEmpty());
 }
+} // namespace GeometryIOTests
 } // namespace bone

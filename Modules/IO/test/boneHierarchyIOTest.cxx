@@ -11,7 +11,7 @@ namespace bone
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-namespace
+namespace HierarchyIOTests
 {
 // The box, and its first cube as the coarser level.
 DensityHierarchy<>::Pointer
@@ -37,7 +37,6 @@ TwoLevels()
   hierarchy->SetLevels(levels);
   return hierarchy;
 }
-} // namespace
 
 using HierarchyIOTest = FileTest;
 
@@ -96,4 +95,5 @@ TEST_F(HierarchyIOTest, AWriteThatFailsLeavesNothing)
               HasSubstr("cannot write"));
   EXPECT_THAT(Files(), testing::IsEmpty());
 }
+} // namespace HierarchyIOTests
 } // namespace bone

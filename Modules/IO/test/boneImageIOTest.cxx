@@ -29,7 +29,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-namespace
+namespace ImageIOTests
 {
 template <typename TImage>
 typename TImage::Pointer
@@ -116,7 +116,6 @@ Nifti(const std::vector<short> & size, float shear = 0, short type = 16)
   std::vector<float> data(voxels, 1.0f);
   return header + std::string(reinterpret_cast<const char *>(data.data()), type == 16 ? 4 * voxels : 3 * voxels);
 }
-} // namespace
 
 class ImageIOTest : public FileTest
 {
@@ -477,4 +476,5 @@ TEST_F(ImageIOTest, AFullDiskLeavesNothing)
     EXPECT_THAT(Files(), IsEmpty());
   }
 }
+} // namespace ImageIOTests
 } // namespace bone

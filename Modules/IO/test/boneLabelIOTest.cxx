@@ -9,7 +9,7 @@
 
 namespace bone
 {
-namespace
+namespace LabelIOTests
 {
 class LabelIOTest : public FileTest
 {
@@ -114,5 +114,5 @@ TEST_F(LabelIOTest, RefusesWhatIsNoTable)
   EXPECT_NE(ErrorOfTable("e.json", R"({"a": 1.5})").find("'a'"), std::string::npos);
   EXPECT_NE(ErrorOfTable("f.json", R"({"99999": "a"})").find("'99999'"), std::string::npos);
 }
-} // namespace
+} // namespace LabelIOTests
 } // namespace bone

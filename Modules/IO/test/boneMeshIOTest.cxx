@@ -14,7 +14,7 @@ namespace bone
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-namespace
+namespace MeshIOTests
 {
 void
 ExpectSame(const MeshArrays & a, const MeshArrays & b)
@@ -63,7 +63,6 @@ Array(const std::string & name, const std::string & type, int components, const 
   return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(components) +
          "\" NumberOfTuples=\"1\" format=\"ascii\">" + values + "</DataArray>";
 }
-} // namespace
 
 class MeshIOTest : public FileTest
 {
@@ -325,8 +324,6 @@ TEST_F(MeshIOTest, TheFileIsInlineBase64WithNumericArraysOnly)
   }
 }
 
-namespace
-{
 // A tetrahedron's surface as ASCII PLY, some faces left out or turned.
 std::string
 Ply(const std::vector<std::string> & faces)
@@ -341,7 +338,6 @@ Ply(const std::vector<std::string> & faces)
   }
   return text;
 }
-} // namespace
 
 using SurfaceIOTest = FileTest;
 
@@ -410,4 +406,5 @@ TEST(SurfaceIORealData, ReadsAFemur)
   EXPECT_EQ(surface.points.size(), 18291u);
   EXPECT_EQ(surface.triangles.size(), 36578u);
 }
+} // namespace MeshIOTests
 } // namespace bone

@@ -13,7 +13,7 @@
 
 #include <fstream>
 
-namespace
+namespace ModelIOTests
 {
 using namespace bone;
 
@@ -63,7 +63,6 @@ WriteModel(const std::string & path)
   return path;
 }
 using ModelIO = bone::FileTest;
-} // namespace
 
 TEST_F(ModelIO, WhatWasWrittenIsRead)
 {
@@ -197,3 +196,4 @@ TEST_F(ModelIO, RefusesIdsOutOfRange)
   }
   EXPECT_THROW(ReadStatisticalModel(path), IOError);
 }
+} // namespace ModelIOTests

@@ -10,14 +10,13 @@ namespace bone
 {
 using testing::HasSubstr;
 
-namespace
+namespace StructureSetTests
 {
 std::vector<Vector3>
 Square(double x, double half, double z)
 {
   return { { x - half, -half, z }, { x + half, -half, z }, { x + half, half, z }, { x - half, half, z } };
 }
-} // namespace
 
 class StructureSetTest : public FileTest
 {
@@ -87,4 +86,5 @@ TEST_F(StructureSetTest, RefusesOtherDicomFiles)
   WriteText("text.dcm", "text");
   EXPECT_THAT(ErrorOf([&] { ReadContours(Path("text.dcm")); }), HasSubstr("text.dcm"));
 }
+} // namespace StructureSetTests
 } // namespace bone

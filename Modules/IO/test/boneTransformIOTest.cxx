@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace
+namespace TransformIOTests
 {
 using Transform = itk::Euler3DTransform<double>;
 
@@ -131,4 +131,4 @@ TEST_F(TransformIO, TakesFilesOfOlderVersionsAndSinglePrecision)
   EXPECT_EQ(read->GetTranslation()[2], 3.0);
   EXPECT_EQ(read->GetCenter()[0], 4.0);
 }
-} // namespace
+} // namespace TransformIOTests

@@ -11,7 +11,7 @@
 
 namespace bone
 {
-namespace
+namespace CorticalFitTests
 {
 constexpr double Blur = 0.45; // mm
 
@@ -161,5 +161,5 @@ TEST(CorticalFit, AnotherBoneOutsideDoesNotCount)
   EXPECT_NEAR(fit.cortex.thickness, 1.0, 0.03);
   EXPECT_NEAR(fit.cortex.outer, 0.2, 0.03);
 }
-} // namespace
+} // namespace CorticalFitTests
 } // namespace bone

@@ -13,7 +13,7 @@
 
 namespace bone
 {
-namespace
+namespace CorticalThicknessFilterTests
 {
 using Image = itk::Image<float, 3>;
 using Filter = CorticalThicknessFilter<>;
@@ -311,5 +311,5 @@ TEST(CorticalThicknessReport, CountsPointsWithTheirArea)
   EXPECT_NEAR(report["shareOfArea"]["solid"].get<double>(), other / area, 1e-12);
   EXPECT_EQ(report["points"], 4);
 }
-} // namespace
+} // namespace CorticalThicknessFilterTests
 } // namespace bone

@@ -15,7 +15,7 @@
 
 #include <numeric>
 
-namespace
+namespace CutIntegralsTests
 {
 using namespace bone;
 
@@ -336,4 +336,4 @@ TEST(CutIntegrals, RefusesWhatIsNoSolid)
   EXPECT_THROW(MakeCylinder(Vector3::UnitX(), Vector3::UnitX(), 1.0), std::invalid_argument);
   EXPECT_THROW(IntegrateSolid(WavyTube(1), Solid(), 0.0), std::invalid_argument);
 }
-} // namespace
+} // namespace CutIntegralsTests

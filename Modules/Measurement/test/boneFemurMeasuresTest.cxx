@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace FemurMeasuresTests
 {
 using namespace bone;
 using test::FemurShape;
@@ -188,4 +188,4 @@ TEST(FemurMeasures, TheCortexOfARodHasItsThickness)
   femur.neckReason = "landmark femoral_neck is missing";
   EXPECT_EQ(ReasonOf(MeasureNeckCortex(mesh, femur), "neckCorticalThickness"), femur.neckReason);
 }
-} // namespace
+} // namespace FemurMeasuresTests

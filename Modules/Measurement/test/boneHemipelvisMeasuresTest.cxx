@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace HemipelvisMeasuresTests
 {
 using namespace bone;
 
@@ -126,4 +126,4 @@ TEST(HemipelvisMeasures, WhatIsMissingIsSaid)
   EXPECT_EQ(MeasureHemipelvis(FitHemipelvis(surface, {})).missing.size(), 7u);
   EXPECT_EQ(FitHemipelvis(surface, { { "acetabulum", Vector3(40, 30, 30) } }).rim.has_value(), false);
 }
-} // namespace
+} // namespace HemipelvisMeasuresTests

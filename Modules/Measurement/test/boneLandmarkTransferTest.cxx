@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace LandmarkTransferTests
 {
 using namespace bone;
 
@@ -98,4 +98,4 @@ TEST(LandmarkTransfer, RefusesAnotherTopologyAndALandmarkOfAnotherSpace)
   EXPECT_THROW(LocateLandmarks(MeshArrays(), Places()), std::invalid_argument);
   EXPECT_THROW(PlaceLandmarks(MeshArrays(), LocateLandmarks(standard, Places())), std::invalid_argument);
 }
-} // namespace
+} // namespace LandmarkTransferTests

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace MeasureReportTests
 {
 using namespace bone;
 
@@ -103,4 +103,4 @@ TEST(MeasureReport, ASurfaceHasNoDensityButABonesMeasures)
               testing::HasSubstr("surface"));
   EXPECT_FALSE(report["landmarks"][0].contains("cell"));
 }
-} // namespace
+} // namespace MeasureReportTests

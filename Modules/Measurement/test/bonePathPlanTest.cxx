@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace
+namespace PathPlanTests
 {
 using namespace bone;
 
@@ -161,4 +161,4 @@ TEST(PathPlan, RefusesWhatIsNoPathAndAModelWithoutDensity)
   EXPECT_THROW(planner.Assess({ Vector3::Zero(), Vector3::Zero(), 1.0 }, 1.0, 1.0), std::invalid_argument);
   EXPECT_THROW(PathPlanner(test::MakeTube({})), std::invalid_argument);
 }
-} // namespace
+} // namespace PathPlanTests

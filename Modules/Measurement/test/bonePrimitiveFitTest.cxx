@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace
+namespace PrimitiveFitTests
 {
 using namespace bone;
 
@@ -110,4 +110,4 @@ TEST(PrimitiveFit, RefusesTooFewOrDegeneratePoints)
   EXPECT_THROW(FitPlane({ square[0], square[1], square[4] }, { 1, 1, 1 }), std::invalid_argument);
   EXPECT_NO_THROW(FitPlane(square, ones));
 }
-} // namespace
+} // namespace PrimitiveFitTests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ResectionPlanTests
 {
 using namespace bone;
 
@@ -79,4 +79,4 @@ TEST(ResectionPlan, RefusesAPlaneBesideTheBoneAndSaysWhereThereIsNoDensity)
   EXPECT_NEAR(ValueOf(plan, "resection.section.area"), 96.0, 1e-9);
   EXPECT_FALSE(plan.missing.empty());
 }
-} // namespace
+} // namespace ResectionPlanTests

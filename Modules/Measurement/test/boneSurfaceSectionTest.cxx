@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace SurfaceSectionTests
 {
 using namespace bone;
 
@@ -49,4 +49,4 @@ TEST(SurfaceSection, AHoleHasANegativeArea)
   EXPECT_NEAR(along.centroid.y(), 20.0, 0.1);
   EXPECT_NEAR(FindSection(torus, Vector3(0.2, -1.0, 0.0), Vector3::UnitX()).centroid.y(), -20.0, 0.1);
 }
-} // namespace
+} // namespace SurfaceSectionTests

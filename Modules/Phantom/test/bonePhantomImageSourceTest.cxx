@@ -21,7 +21,7 @@
 
 using namespace bone;
 
-namespace
+namespace PhantomImageSourceTests
 {
 using ImageType = itk::Image<float, 3>;
 using LabelType = itk::Image<short, 3>;
@@ -116,7 +116,6 @@ ErrorOf(SourceType * source)
   }
   return "";
 }
-} // namespace
 
 TEST(PhantomImageSource, LabelsAgreeWithTheModelOnAnObliqueAnisotropicGrid)
 {
@@ -436,3 +435,4 @@ TEST(PhantomImageSource, RefusesWhatMakesNoImage)
   source->FitToBoneOff();
   EXPECT_THAT(ErrorOf(source), HasSubstr("Size must be positive"));
 }
+} // namespace PhantomImageSourceTests

@@ -19,7 +19,7 @@
 
 using namespace bone;
 
-namespace
+namespace PhantomModelTests
 {
 /** Uniform points in the model's box, a little enlarged. */
 class BoxPoints
@@ -64,7 +64,6 @@ Bones(std::uint64_t seeds = 3)
   }
   return bones;
 }
-} // namespace
 
 TEST(PhantomModel, LayersAreNested)
 {
@@ -382,3 +381,4 @@ TEST(HemipelvisPhantom, RefusesParametersThatMakeNoBone)
   p.cupRadius = -1.0;
   EXPECT_THROW(HemipelvisPhantom{ p }, itk::ExceptionObject);
 }
+} // namespace PhantomModelTests

@@ -18,7 +18,7 @@ using namespace bone;
 using test::Box;
 using test::Shape;
 
-namespace
+namespace SurfacePhantomTests
 {
 /** An icosahedron, split `levels` times, with its points on the sphere. */
 Shape
@@ -85,7 +85,6 @@ ErrorOf(const Shape & s, const SurfacePhantomParameters & p = SurfacePhantomPara
   }
   return "";
 }
-} // namespace
 
 TEST(SurfacePhantom, RefusesWhatIsNoClosedSurface)
 {
@@ -260,3 +259,4 @@ TEST(SurfacePhantom, LongBoneHasNestedLayersAndACavityInItsShaft)
     }
   }
 }
+} // namespace SurfacePhantomTests

@@ -19,7 +19,7 @@
 #include <iterator>
 #include <set>
 
-namespace
+namespace CanvasTests
 {
 using namespace bone;
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ TEST(ContourStyles, EveryKindHasItsOwn)
   contour.axis = true;
   EXPECT_EQ(StyleOf(contour).name, "medial axis");
 }
-} // namespace
+} // namespace CanvasTests

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace
+namespace ChartTests
 {
 using namespace bone;
 using ::testing::DoubleEq;
@@ -170,4 +170,4 @@ TEST(Histogram, BarsAreAsHighAsTheirCounts)
   EXPECT_GT(highest, 100);
   EXPECT_NEAR(2.0 * lowest, highest, 2.0);
 }
-} // namespace
+} // namespace ChartTests

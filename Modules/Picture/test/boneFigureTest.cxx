@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace FigureTests
 {
 using namespace bone;
 
@@ -163,4 +163,4 @@ TEST(Figure, AnEmptyPlaceKeepsItsColumn)
   EXPECT_EQ(places[2].x, places[1].x);
   EXPECT_GT(places[2].y, places[1].y + 30.0);
 }
-} // namespace
+} // namespace FigureTests

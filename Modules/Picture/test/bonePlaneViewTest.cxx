@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace
+namespace PlaneViewTests
 {
 using namespace bone;
 
@@ -235,4 +235,4 @@ TEST(XRayPicture, AViewFromTheFrontHasThePatientsLeftToTheRight)
   EXPECT_EQ(DescribeView(parallel), "PA view");
   EXPECT_EQ(PixelSizeAt(parallel, Vector3::Zero()), parallel.spacing);
 }
-} // namespace
+} // namespace PlaneViewTests

@@ -16,7 +16,7 @@
 
 using namespace bone;
 
-namespace
+namespace ContourFlipsTests
 {
 constexpr double Radius = 12.0;
 
@@ -54,7 +54,6 @@ MeanSquare(const TetraComplex & complex, const ContourSamples & contours)
 }
 
 constexpr double Inner = Radius - Radius / 3.5;
-} // namespace
 
 TEST(ContourSamples, BelongToTrianglesOfTheirLevelThatLookTheirWay)
 {
@@ -249,3 +248,4 @@ TEST(FlipToContours, IsPartOfTheQualityStageWhereContoursAreGiven)
     EXPECT_TRUE(validation.IsValid()) << validation.Summary();
   }
 }
+} // namespace ContourFlipsTests

@@ -9,7 +9,7 @@
 
 using namespace bone;
 
-namespace
+namespace LabelOutlineTests
 {
 using Image = itk::Image<short, 3>;
 
@@ -45,7 +45,6 @@ Blocks()
   }
   return image;
 }
-} // namespace
 
 TEST(LabelOutline, HasTheFacesOfABlockAndTheVoxelsBesideThem)
 {
@@ -88,3 +87,4 @@ TEST(LabelOutline, IsOfAllLabelsButZeroAndNotWhereTheImageEnds)
   EXPECT_TRUE(FindOutline(*image, 9).faces.empty());
   EXPECT_TRUE(FindOutline(*image, 9).voxels.empty());
 }
+} // namespace LabelOutlineTests

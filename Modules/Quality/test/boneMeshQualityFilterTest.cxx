@@ -231,8 +231,6 @@ TEST(MeshQualityFilter, SurfacesStayWithinTheBoundBothWays)
   EXPECT_LE(farthest(made, firstTree, true), 1.5 * bound);
 }
 
-namespace
-{
 /** Centroid of the boundary's area. */
 Vector3
 MiddleOfBoundary(const MeshArrays & arrays)
@@ -247,7 +245,6 @@ MiddleOfBoundary(const MeshArrays & arrays)
   }
   return sum / area;
 }
-} // namespace
 
 TEST(MeshQualityFilter, SurfacesAreFittedToContours)
 {
@@ -269,8 +266,6 @@ TEST(MeshQualityFilter, SurfacesAreFittedToContours)
   }
 }
 
-namespace
-{
 /** Voxels of a ball, labelled 4. */
 itk::Image<short, 3>::Pointer
 LabelOfBall(const Vector3 & centre, double radius, double spacing)
@@ -290,7 +285,6 @@ LabelOfBall(const Vector3 & centre, double radius, double spacing)
   }
   return image;
 }
-} // namespace
 
 TEST(MeshQualityFilter, SurfacesAreFittedToLabelsBetweenSlices)
 {

@@ -12,7 +12,7 @@
 
 using namespace bone;
 
-namespace
+namespace MeshRepairTests
 {
 constexpr double AllCells = -1.0; // of a cosine: every cell is worse
 
@@ -38,7 +38,6 @@ RepairAll(MeshRepair & repair)
   }
   return done;
 }
-} // namespace
 
 TEST(MeshRepair, LooksAgainWhereSomethingHasChangedOrAllIsForgotten)
 {
@@ -146,3 +145,4 @@ TEST(SurfaceBound, ManySmallMovesStayWithinIt)
     }
   }
 }
+} // namespace MeshRepairTests

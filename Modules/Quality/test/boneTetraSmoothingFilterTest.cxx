@@ -18,7 +18,7 @@
 
 using namespace bone;
 
-namespace
+namespace TetraSmoothingFilterTests
 {
 using MeshType = DensityMesh<double>;
 using FilterType = TetraSmoothingFilter<MeshType>;
@@ -96,7 +96,6 @@ Shape(unsigned seed)
   shape.spacing = shape.closed ? 5 : 2;
   return shape;
 }
-} // namespace
 
 TEST(TetraSmoothingFilter, EnhancedKeepsEveryBodyValidAndItsLayers)
 {
@@ -329,3 +328,4 @@ TEST(TetraSmoothingFilter, FloatMeshWorks)
   filter->Update();
   EXPECT_EQ(CountInverted(filter->GetOutput()->GetArrays()), 0u);
 }
+} // namespace TetraSmoothingFilterTests

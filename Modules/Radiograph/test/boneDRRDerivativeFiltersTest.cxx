@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace
+namespace DRRDerivativeFiltersTests
 {
 using namespace bone;
 using Mesh = DensityMesh<double>;
@@ -93,7 +93,6 @@ ExpectRefusal(TFilter * filter, const std::string & words)
     EXPECT_THAT(error.what(), testing::HasSubstr(words));
   }
 }
-} // namespace
 
 TEST(DRRDerivativeImageFilter, WritesTheKernelsImagesInTheViewsPlace)
 {
@@ -292,3 +291,4 @@ TEST(DRRAdjointFilter, ReportsProgressOfTwoViewsThatDoesNotFallAndStopsOnAbort)
   test::ExpectUsableAfterAbort(filter);
   EXPECT_EQ(filter->GetOutput()->GetCells().coefficients, before);
 }
+} // namespace DRRDerivativeFiltersTests

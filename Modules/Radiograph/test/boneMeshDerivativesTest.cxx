@@ -11,7 +11,7 @@
 
 #include <numeric>
 
-namespace
+namespace MeshDerivativesTests
 {
 using namespace bone;
 using View = XRayGeometry::View;
@@ -228,7 +228,6 @@ ExpectCentralDifferences(const MeshArrays & mesh, const View & view, const MeshR
       << "mode " << m;
   }
 }
-} // namespace
 
 TEST(MeshDerivatives, EqualCentralDifferencesAtAnyDegree)
 {
@@ -488,3 +487,4 @@ TEST(MeshDerivatives, TheAdjointDoesNotDependOnTheOrderOfWorkNorOnAKeptModelAndL
     }
   }
 }
+} // namespace MeshDerivativesTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ViewPresetsTests
 {
 using namespace bone;
 
@@ -48,7 +48,6 @@ ExpectFramed(const XRayGeometry::View & view)
     EXPECT_LE(view.size[k] - (high[k] - low[k]), 1.0 + 1e-6);
   }
 }
-} // namespace
 
 TEST(ViewPresets, PresetsLookAsTheirNamesSay)
 {
@@ -103,3 +102,4 @@ TEST(ViewPresets, RefuseABoxThatIsNotBetweenSourceAndDetector)
   arm.sourceToDetector = 1000;
   EXPECT_THROW(FrameCArm(arm, box, pixels), itk::ExceptionObject);
 }
+} // namespace ViewPresetsTests

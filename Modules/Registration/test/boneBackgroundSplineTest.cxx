@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace BackgroundSplineTests
 {
 using namespace bone;
 
@@ -89,4 +89,4 @@ TEST(BackgroundSpline, ALengthOfNothingHasNoBSplines)
 {
   EXPECT_EQ(BackgroundSpline({ { Columns, Rows } }, 0.0).GetNumberOfCoefficients(), 0);
 }
-} // namespace
+} // namespace BackgroundSplineTests

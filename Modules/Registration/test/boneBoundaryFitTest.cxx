@@ -9,7 +9,7 @@
 
 #include <functional>
 
-namespace
+namespace BoundaryFitTests
 {
 using namespace bone;
 
@@ -158,4 +158,4 @@ TEST(BoundaryFit, PartsWithoutAnEdgeAreNamed)
   EXPECT_GT(patches.front().centre[2], 60.0);
   EXPECT_NEAR(patches.front().share, 1.0 - support.supported, 0.05);
 }
-} // namespace
+} // namespace BoundaryFitTests

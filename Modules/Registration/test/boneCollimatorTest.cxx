@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace
+namespace CollimatorTests
 {
 using namespace bone;
 
@@ -63,7 +63,6 @@ WorstOffset(const std::vector<CollimatorEdge> & edges, double halfWidth, double 
   }
   return worst;
 }
-} // namespace
 
 TEST(Collimator, FindsTheFourBordersOfAStraightField)
 {
@@ -117,3 +116,4 @@ TEST(Collimator, AnImageOfOneValueHasNoBorders)
 {
   EXPECT_TRUE(FindCollimator(std::vector<double>(120000, -1.0), size, 0.7).empty());
 }
+} // namespace CollimatorTests

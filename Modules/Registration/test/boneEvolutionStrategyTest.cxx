@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace
+namespace EvolutionStrategyTests
 {
 using bone::EvolutionStrategy;
 
@@ -66,4 +66,4 @@ TEST(EvolutionStrategy, PassesOverCandidatesWithoutACost)
   });
   EXPECT_LT((found - Eigen::Vector2d(0.5, 0.2)).norm(), 1e-4);
 }
-} // namespace
+} // namespace EvolutionStrategyTests

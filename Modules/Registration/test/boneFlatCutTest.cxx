@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace FlatCutTests
 {
 using namespace bone;
 
@@ -67,4 +67,4 @@ TEST(FlatCut, DensityFadesTowardsIt)
     }
   }
 }
-} // namespace
+} // namespace FlatCutTests

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace
+namespace ImageGradientTests
 {
 TEST(ImageGradient, IsExactForLinearImagesAndNothingAtTheBorder)
 {
@@ -78,4 +78,4 @@ TEST(ImageGradient, OfAWaveIsDampedAsByAGaussian)
     EXPECT_NEAR(x[8 * columns + c], damping * frequency * std::cos(frequency * c), 0.03 * frequency);
   }
 }
-} // namespace
+} // namespace ImageGradientTests

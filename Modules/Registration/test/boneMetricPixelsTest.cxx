@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace
+namespace MetricPixelsTests
 {
 using namespace bone;
 
@@ -81,4 +81,4 @@ TEST(MetricPixels, GramSumsAreProducts)
   const Eigen::MatrixXf expected = part.transpose() * part + part.topRows(2).transpose() * part.topRows(2);
   EXPECT_LT((sum.Get() - expected.cast<double>()).norm(), 1e-5);
 }
-} // namespace
+} // namespace MetricPixelsTests

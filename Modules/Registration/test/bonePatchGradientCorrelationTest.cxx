@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace
+namespace PatchGradientCorrelationTests
 {
 using namespace bone;
 
@@ -183,4 +183,4 @@ TEST(PatchGradientCorrelation, CorrelationsAreOneWhereImagesAgree)
   const auto                     map = metric.Correlations(image.data());
   EXPECT_NEAR(map[15 * Columns + 20], 1.0, 1e-3);
 }
-} // namespace
+} // namespace PatchGradientCorrelationTests

@@ -10,7 +10,7 @@
 
 #include <random>
 
-namespace
+namespace PoseInitializerTests
 {
 using namespace bone;
 using testing::HasSubstr;
@@ -115,7 +115,6 @@ ReasonAgainst(const std::vector<View> & views, const std::vector<LandmarkPair> &
   }
   return "none";
 }
-} // namespace
 
 TEST(PoseInitializer, FindsAnyPoseOfSixPointsInOneView)
 {
@@ -409,3 +408,4 @@ TEST(MatchLandmarks, PairsByNameAndRefusesUnknownOnes)
   EXPECT_THROW(MatchLandmarks(model, { { { "c", { 1, 2 } } } }), itk::ExceptionObject);
   EXPECT_THROW(MatchLandmarks(model, { {} }), itk::ExceptionObject);
 }
+} // namespace PoseInitializerTests

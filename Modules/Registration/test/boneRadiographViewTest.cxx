@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace RadiographViewTests
 {
 using namespace bone;
 
@@ -56,4 +56,4 @@ TEST(RadiographView, ReductionComesNearestToTheSizeAskedFor)
   EXPECT_EQ(ReductionTo(Ramp(100, 200).view, 64), 3);
   EXPECT_EQ(ReductionTo(Ramp(40, 30).view, 64), 1);
 }
-} // namespace
+} // namespace RadiographViewTests

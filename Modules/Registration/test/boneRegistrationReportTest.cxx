@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace
+namespace RegistrationReportTests
 {
 using namespace bone;
 
@@ -82,4 +82,4 @@ TEST(DrawRegistration, TheOutlineIsThatOfTheModelsPose)
   EXPECT_NEAR(shift.x(), -canvas, 4.0);
   EXPECT_NEAR(shift.y(), 0.5 * canvas, 4.0);
 }
-} // namespace
+} // namespace RegistrationReportTests

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace RigidBundleTests
 {
 using namespace bone;
 using namespace bone::test;
@@ -183,4 +183,4 @@ TEST(RigidBundle, CovariancesAreAlongTheGeometrysAxes)
   EXPECT_LT(LargestDistance(body, result.pose, turned), 0.1);
   EXPECT_GT(result.covariance(1, 1), 9.0 * result.covariance(0, 0));
 }
-} // namespace
+} // namespace RigidBundleTests

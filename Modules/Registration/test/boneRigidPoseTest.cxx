@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace
+namespace RigidPoseTests
 {
 using namespace bone;
 using Step = Eigen::Matrix<double, 6, 1>;
@@ -43,7 +43,6 @@ AnyStep(unsigned int seed, double turn)
 }
 
 const Vector3 point(31, -17, 8);
-} // namespace
 
 TEST(RigidPose, ApplyInverseUndoesApply)
 {
@@ -126,3 +125,4 @@ TEST(RigidPose, ItksTransformMovesPointsAlikeAndComesBack)
     EXPECT_NEAR((back.centre - pose.centre).norm(), 0, 1e-12);
   }
 }
+} // namespace RigidPoseTests

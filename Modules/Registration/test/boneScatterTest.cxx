@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-namespace
+namespace ScatterTests
 {
 using namespace bone;
 
@@ -33,7 +33,6 @@ BodyPhotons(const DetectorGrid & grid, double depth, double open)
 }
 
 const DetectorGrid grid{ { { 160, 120 } }, { 2.0, 2.5 } };
-} // namespace
 
 TEST(Scatter, TheBlurKeepsAConstantAndTheSumOfASpot)
 {
@@ -119,3 +118,4 @@ TEST(Scatter, WithoutARatioNothingIsSubtracted)
   const auto total = BodyPhotons(grid, 2, 1);
   EXPECT_EQ(SubtractScatter(total, grid, { 0, 50, 1 }, 0.02, Execution()).primary, total);
 }
+} // namespace ScatterTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace VolumeSearchTests
 {
 using namespace bone;
 
@@ -45,4 +45,4 @@ TEST(VolumeSearch, FewHypothesesFindTheMeanFromAnySide)
     }
   }
 }
-} // namespace
+} // namespace VolumeSearchTests

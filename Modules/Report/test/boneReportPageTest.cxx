@@ -18,7 +18,7 @@
 #include <jpeglib.h>
 #include <zlib.h>
 
-namespace
+namespace ReportPageTests
 {
 using bone::IdType;
 using testing::HasSubstr;
@@ -357,4 +357,4 @@ TEST(Provenance, ChecksumsAreThoseOfMd5sum)
   EXPECT_THROW(bone::DescribeInput(folder + "/none"), bone::IOError);
   std::filesystem::remove_all(folder);
 }
-} // namespace
+} // namespace ReportPageTests

@@ -18,7 +18,7 @@
 
 using namespace bone;
 
-namespace
+namespace AngleImprovementTests
 {
 using MeshType = DensityMesh<double>;
 using FilterType = TetraCollapseFilter<MeshType>;
@@ -102,7 +102,6 @@ Wanted()
   const TetraCollapseParameters parameters;
   return { parameters.wantedCorticalDihedralAngle, parameters.wantedDihedralAngle };
 }
-} // namespace
 
 TEST(AngleImprovement, LevelsHaveTheWantedAnglesAndStayValid)
 {
@@ -322,3 +321,4 @@ TEST(AngleImprovement, RemovedSurfacePointsKeepTheirDistances)
   samples.Distribute(complex);
   EXPECT_NE(costs(), after);
 }
+} // namespace AngleImprovementTests

@@ -10,7 +10,7 @@
 
 using namespace bone;
 
-namespace
+namespace MeshCollapserTests
 {
 constexpr IdType Pit = 0;
 constexpr IdType Below = 1;
@@ -78,7 +78,6 @@ OverlapsRefused(const MeshCollapser & collapser)
 {
   return collapser.Refused()[static_cast<int>(MeshOperation::Overlap)];
 }
-} // namespace
 
 TEST(MeshCollapser, APitIsNotFilledWhereTheBoundaryWouldPassThroughWhatStandsInIt)
 {
@@ -98,3 +97,4 @@ TEST(MeshCollapser, AnEmptyPitIsFilled)
   EXPECT_EQ(OverlapsRefused(collapser), 0u);
   EXPECT_TRUE(collapser.Complex().Star(Pit).empty());
 }
+} // namespace MeshCollapserTests

@@ -9,7 +9,7 @@
 
 using namespace bone;
 
-namespace
+namespace SurfaceEnvelopeTests
 {
 constexpr IdType Tip = 0;
 constexpr IdType Foot = 1;
@@ -30,7 +30,6 @@ Spike()
   test::MakePositive(mesh);
   return mesh;
 }
-} // namespace
 
 TEST(SurfaceEnvelope, ASpikeMayGoOnlyWhereItsTipIsWithinTheBound)
 {
@@ -41,3 +40,4 @@ TEST(SurfaceEnvelope, ASpikeMayGoOnlyWhereItsTipIsWithinTheBound)
   EXPECT_FALSE(envelope.Allows(complex, Tip, OnRim, 2.9));
   EXPECT_TRUE(envelope.Allows(complex, Tip, OnRim, 3.1));
 }
+} // namespace SurfaceEnvelopeTests

@@ -17,7 +17,7 @@
 #include <cmath>
 #include <string>
 
-namespace
+namespace BranchingTests
 {
 using bone::BranchingKind;
 using bone::Loop;
@@ -96,7 +96,6 @@ UpsideDown(Slices slices)
   std::reverse(slices.begin(), slices.end());
   return slices;
 }
-} // namespace
 
 TEST(Branching, SplitsOneContourIntoTwo)
 {
@@ -289,3 +288,4 @@ TEST(Branching, RefusesAValueThatIsNone)
   source->SetBranching(static_cast<BranchingKind>(7));
   EXPECT_THROW(source->Update(), itk::ExceptionObject);
 }
+} // namespace BranchingTests

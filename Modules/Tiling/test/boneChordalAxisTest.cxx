@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace ChordalAxisTests
 {
 using namespace bone;
 using namespace bone::tiling;
@@ -47,4 +47,4 @@ TEST(CarryAxis, IsNothingWhereEdgesBecomeTooShort)
 {
   EXPECT_TRUE(CarryAxis(LineTo(18), LineTo(18), Strip, 4.5).points.empty());
 }
-} // namespace
+} // namespace ChordalAxisTests

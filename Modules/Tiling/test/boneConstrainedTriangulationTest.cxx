@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace
+namespace ConstrainedTriangulationTests
 {
 using bone::Vector2;
 using bone::tiling::ConstrainedTriangulation;
@@ -121,4 +121,4 @@ TEST(ConstrainedTriangulation, RefusesSegmentsThatCross)
   triangulation.Constrain(a, b);
   EXPECT_THROW(triangulation.Constrain(c, d), std::runtime_error);
 }
-} // namespace
+} // namespace ConstrainedTriangulationTests

@@ -17,7 +17,7 @@
 #include <random>
 #include <set>
 
-namespace
+namespace ContourTilerTests
 {
 using CellPlaces = std::array<std::array<double, 3>, 4>;
 
@@ -186,4 +186,4 @@ TEST(ContourTiler, TurningTheStackKeepsTheNumberOfCells)
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomStackTest, testing::Range(0u, 8u));
 // Bodies whose parts once came apart where a slab's slices were moved against each other.
 INSTANTIATE_TEST_SUITE_P(Moved, RandomStackTest, testing::Values(11u, 155u, 170u));
-} // namespace
+} // namespace ContourTilerTests

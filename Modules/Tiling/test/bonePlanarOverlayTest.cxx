@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-namespace
+namespace PlanarOverlayTests
 {
 using bone::Vector2;
 using bone::tiling::BoxTriangulation;
@@ -114,4 +114,4 @@ TEST(PlanarOverlay, RefusesVerticesInOnePlace)
 {
   EXPECT_THROW(bone::tiling::Overlay(RandomBox(5, 10), RandomBox(5, 10), bone::Execution()), std::runtime_error);
 }
-} // namespace
+} // namespace PlanarOverlayTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace SlabTilerTests
 {
 using bone::ContourStack;
 using bone::Vector3;
@@ -60,4 +60,4 @@ TEST(WallsCross, LooksAtTheTetrahedraFromTheFirstGiven)
   EXPECT_TRUE(three.Cross(0));
   EXPECT_FALSE(three.Cross(1));
 }
-} // namespace
+} // namespace SlabTilerTests

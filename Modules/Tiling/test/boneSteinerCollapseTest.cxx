@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace SteinerCollapseTests
 {
 using namespace bone;
 
@@ -48,4 +48,4 @@ TEST(CollapseSteinerPoints, PointsOfAFlatSurfaceAreTakenAway)
 {
   EXPECT_LT(CellsLeft(0.0, 0.05), 12u);
 }
-} // namespace
+} // namespace SteinerCollapseTests

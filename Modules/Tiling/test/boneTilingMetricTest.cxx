@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace
+namespace TilingMetricTests
 {
 using bone::TilingMetricKind;
 using bone::TilingStep;
@@ -110,4 +110,4 @@ TEST(TilingMetric, EachKindMakesItsMetric)
   EXPECT_NEAR(evaluate(TilingMetricKind::Combined), 10 + DeviationAcross / 500, 1e-9);
   EXPECT_THROW(bone::MakeTilingMetric(TilingMetricKind::Density, nullptr), std::invalid_argument);
 }
-} // namespace
+} // namespace TilingMetricTests
