@@ -190,7 +190,7 @@ TEST_F(ContourImageFileTest, ContoursAreReadFromALabelMap)
 {
   LabelImage::DirectionType direction;
   direction.SetIdentity();
-  WriteImage(RasterizeContours(MakeStack(), MakeGrid(direction, 2.0)), Path("labels.nii.gz"));
+  bone::WriteImage(RasterizeContours(MakeStack(), MakeGrid(direction, 2.0)), Path("labels.nii.gz"));
   EXPECT_EQ(ReadContours(Path("labels.nii.gz"))->GetSlices().size(), 3u);
   EXPECT_THAT(ErrorOf([&] { ReadContours(Path("labels.nii.gz"), { "", 7, 2 }); }), testing::HasSubstr("is 7"));
 }

@@ -134,9 +134,9 @@ TEST_F(ImageIOTest, AnObliqueVolumeIsReadAsWrittenInEveryFormat)
   for (const char * name : { "a.nii.gz", "a.nii", "a.mha", "a.mhd", "a.nrrd", "a.nhdr", "a.hdr", "a.img.gz" })
   {
     SCOPED_TRACE(name);
-    WriteImage(ct, Path(name));
+    bone::WriteImage(ct, Path(name));
     ExpectSame<CTImage>(ReadCT(Path(name)), ct);
-    WriteImage(labels, Path(name));
+    bone::WriteImage(labels, Path(name));
     ExpectSame<LabelImage>(ReadLabels(Path(name)), labels);
   }
   for (const auto & file : Files())
@@ -150,12 +150,12 @@ TEST_F(ImageIOTest, VoxelsInAnotherFileAreTold)
   const auto ct = ObliqueRamp<CTImage>();
   for (const char * name : { "a.nii.gz", "a.nii", "a.mha", "a.nrrd" })
   {
-    WriteImage(ct, Path(name));
+    bone::WriteImage(ct, Path(name));
     EXPECT_FALSE(HasDetachedVoxels(Path(name))) << name;
   }
   for (const char * name : { "b.mhd", "b.nhdr", "b.hdr", "b.img.gz" })
   {
-    WriteImage(ct, Path(name));
+    bone::WriteImage(ct, Path(name));
     EXPECT_TRUE(HasDetachedVoxels(Path(name))) << name;
   }
   // Headers of other names, which ITK reads as well.
@@ -175,21 +175,21 @@ TEST_F(ImageIOTest, PicturesAreWritten)
     const unsigned char rgb[3] = { i, static_cast<unsigned char>(100 + i), static_cast<unsigned char>(255 - 9 * i) };
     colours->GetBufferPointer()[i] = PictureImage::PixelType(rgb);
   }
-  WriteImage(grey, Path("g.png"));
-  WriteImage(colours, Path("p.png"));
+  bone::WriteImage(grey, Path("g.png"));
+  bone::WriteImage(colours, Path("p.png"));
   const auto greyRead = itk::ReadImage<itk::Image<unsigned char, 2>>(Path("g.png"));
   const auto coloursRead = itk::ReadImage<PictureImage>(Path("p.png"));
   ASSERT_EQ(coloursRead->GetBufferedRegion().GetSize(), colours->GetBufferedRegion().GetSize());
   EXPECT_TRUE(std::equal(grey->GetBufferPointer(), grey->GetBufferPointer() + 12, greyRead->GetBufferPointer()));
   EXPECT_TRUE(
     std::equal(colours->GetBufferPointer(), colours->GetBufferPointer() + 12, coloursRead->GetBufferPointer()));
-  WriteImage(MakeImage<itk::Image<float, 2>>({ { 4, 3 } }), Path("f.mha"));
+  bone::WriteImage(MakeImage<itk::Image<float, 2>>({ { 4, 3 } }), Path("f.mha"));
   auto deep = MakeImage<itk::Image<unsigned short, 2>>({ { 4, 3 } });
   for (unsigned short i = 0; i < 12; ++i)
   {
     deep->GetBufferPointer()[i] = static_cast<unsigned short>(5000 * i + i);
   }
-  WriteImage(deep, Path("d.png"));
+  bone::WriteImage(deep, Path("d.png"));
   const auto deepRead = itk::ReadImage<itk::Image<unsigned short, 2>>(Path("d.png"));
   ASSERT_EQ(deepRead->GetBufferedRegion().GetSize(), deep->GetBufferedRegion().GetSize());
   EXPECT_TRUE(std::equal(deep->GetBufferPointer(), deep->GetBufferPointer() + 12, deepRead->GetBufferPointer()));
@@ -201,7 +201,7 @@ TEST_F(ImageIOTest, APictureOnAFullDiskIsAnError)
   const auto picture = MakeImage<PictureImage>({ { 400, 300 } });
   EXPECT_THAT(ErrorOf([&] {
                 const FullDisk full(20);
-                WriteImage(picture, Path("p.png"));
+                bone::WriteImage(picture, Path("p.png"));
               }),
               HasSubstr("p.png: cannot write"));
   EXPECT_THAT(Files(), testing::IsEmpty());
@@ -211,9 +211,9 @@ TEST_F(ImageIOTest, ARadiographIsReadAsWritten)
 {
   auto drr = MakeImage<CTImage>({ { 4, 3, 1 } });
   drr->FillBuffer(2.5f);
-  WriteImage(drr, Path("d.mha"));
+  bone::WriteImage(drr, Path("d.mha"));
   ExpectSame<CTImage>(ReadRadiograph(Path("d.mha")), drr);
-  WriteImage(ObliqueRamp<CTImage>(), Path("v.mha"));
+  bone::WriteImage(ObliqueRamp<CTImage>(), Path("v.mha"));
   EXPECT_THAT(ErrorOf([&] { ReadRadiograph(Path("v.mha")); }), HasSubstr("5 pixels thick (7 x 6 x 5)"));
 }
 
@@ -245,16 +245,16 @@ TEST_F(ImageIOTest, RefusesFilesThatAreCutShort)
   {
     for (const double part : { 0.7, 0.99 })
     {
-      WriteImage(ObliqueRamp<CTImage>(), Path(name));
+      bone::WriteImage(ObliqueRamp<CTImage>(), Path(name));
       expectRefused(name, static_cast<std::size_t>(part * ReadText(name).size()));
     }
   }
   for (const char * name : { "a.nii.gz", "a.mha" })
   {
-    WriteImage(ObliqueRamp<LabelImage>(), Path(name));
+    bone::WriteImage(ObliqueRamp<LabelImage>(), Path(name));
     expectRefused(name, ReadText(name).size() - 1);
   }
-  WriteImage(ObliqueRamp<CTImage>(), Path("a.mhd"));
+  bone::WriteImage(ObliqueRamp<CTImage>(), Path("a.mhd"));
   WriteText("a.raw", "short");
   EXPECT_THAT(ErrorOfReading("a.mhd"), HasSubstr("a.mhd: is cut short"));
   std::filesystem::remove(Path("a.raw"));
@@ -266,7 +266,7 @@ TEST_F(ImageIOTest, RefusesCompressedFilesWithOneChangedByte)
   auto labels = ObliqueRamp<LabelImage>();
   for (const char * name : { "a.nii.gz", "a.mha", "a.nrrd" })
   {
-    WriteImage(labels, Path(name));
+    bone::WriteImage(labels, Path(name));
     ExpectSame<LabelImage>(ReadLabels(Path(name)), labels);
     std::ostringstream whole;
     whole << std::ifstream(Path(name), std::ios::binary).rdbuf();
@@ -341,7 +341,7 @@ TEST_F(ImageIOTest, ALabelMapOfOneBoneSaysSo)
   StateOneBone(*labels);
   for (const char * name : { "a.nii.gz", "a.mha", "a.mhd", "a.nrrd", "a.hdr" })
   {
-    WriteImage(labels, Path(name));
+    bone::WriteImage(labels, Path(name));
     EXPECT_TRUE(StatesOneBone(*ReadLabels(Path(name)))) << name;
   }
 }
@@ -426,7 +426,7 @@ TEST_F(ImageIOTest, RefusesVoxelsThatAreNotFinite)
   for (const char * name : { "n.nii.gz", "n.nii", "n.mha", "n.nrrd", "n.hdr" })
   {
     SCOPED_TRACE(name);
-    WriteImage(ct, Path(name));
+    bone::WriteImage(ct, Path(name));
     EXPECT_THAT(ErrorOfReading(name), HasSubstr("has 2 voxels that are NaN or infinite, the first at [2, 3, 1]"));
     EXPECT_THAT(ErrorOf([&] { ReadLabels(Path(name)); }), HasSubstr("NaN"));
   }
@@ -435,12 +435,12 @@ TEST_F(ImageIOTest, RefusesVoxelsThatAreNotFinite)
 TEST_F(ImageIOTest, RefusesLabelsThatAreNoWholeNumbers)
 {
   auto ct = ObliqueRamp<CTImage>();
-  WriteImage(ct, Path("l.mha"));
+  bone::WriteImage(ct, Path("l.mha"));
   ExpectSame<LabelImage>(ReadLabels(Path("l.mha")), ObliqueRamp<LabelImage>());
   for (const float bad : { 0.5f, 40000.0f })
   {
     ct->SetPixel({ { 0, 1, 0 } }, bad);
-    WriteImage(ct, Path("l.mha"));
+    bone::WriteImage(ct, Path("l.mha"));
     EXPECT_THAT(ErrorOf([&] { ReadLabels(Path("l.mha")); }), HasSubstr("is no label map: its value at [0, 1, 0] is"));
   }
 }
@@ -448,9 +448,9 @@ TEST_F(ImageIOTest, RefusesLabelsThatAreNoWholeNumbers)
 TEST_F(ImageIOTest, AWriteThatFailsLeavesNothing)
 {
   const auto ct = ObliqueRamp<CTImage>();
-  EXPECT_THAT(ErrorOf([&] { WriteImage(ct, Path("no/a.mha")); }), HasSubstr("there is no folder"));
-  EXPECT_THAT(ErrorOf([&] { WriteImage(ct, Path("a.xyz")); }), HasSubstr("no image format has this extension"));
-  EXPECT_THAT(ErrorOf([&] { WriteImage(ct, Path("a.png")); }), HasSubstr("a.png: cannot write"));
+  EXPECT_THAT(ErrorOf([&] { bone::WriteImage(ct, Path("no/a.mha")); }), HasSubstr("there is no folder"));
+  EXPECT_THAT(ErrorOf([&] { bone::WriteImage(ct, Path("a.xyz")); }), HasSubstr("no image format has this extension"));
+  EXPECT_THAT(ErrorOf([&] { bone::WriteImage(ct, Path("a.png")); }), HasSubstr("a.png: cannot write"));
   EXPECT_THAT(Files(), IsEmpty());
 }
 
@@ -469,7 +469,7 @@ TEST_F(ImageIOTest, AFullDiskLeavesNothing)
     EXPECT_THROW(
       {
         const FullDisk full(100000);
-        WriteImage(ct, Path(name));
+        bone::WriteImage(ct, Path(name));
       },
       IOError);
     testing::internal::GetCapturedStderr();

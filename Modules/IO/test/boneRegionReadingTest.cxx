@@ -179,9 +179,9 @@ TEST_F(RegionReadingTest, ARegionOfAnyFormatIsThatOfTheWhole)
 {
   for (const char * name : { "a.nii", "b.nii.gz", "a.mha", "b.mhd", "a.nrrd", "c.nhdr", "d.hdr", "e.img.gz" })
   {
-    WriteImage(MakeNoise<CTImage>(9), Path(name));
+    bone::WriteImage(MakeNoise<CTImage>(9), Path(name));
     ExpectRegionsOfItk(name);
-    WriteImage(MakeNoise<LabelImage>(9), Path(name)); // compressed where the format can
+    bone::WriteImage(MakeNoise<LabelImage>(9), Path(name)); // compressed where the format can
     ExpectRegionsOfItk(name);
   }
 }
@@ -190,9 +190,9 @@ TEST_F(RegionReadingTest, AFileIsReadAndNotOneOfTheSameNameBesideIt)
 {
   // ITK's reader of NIfTI takes a.nii for a.nii.gz where there is one.
   const auto image = MakeNoise<LabelImage>(9);
-  WriteImage(image, Path("a.nii.gz"));
+  bone::WriteImage(image, Path("a.nii.gz"));
   image->FillBuffer(5);
-  WriteImage(image, Path("a.nii"));
+  bone::WriteImage(image, Path("a.nii"));
   EXPECT_EQ(ReadLabels(Path("a.nii.gz"))->GetPixel({ { 0, 0, 0 } }),
             MakeNoise<LabelImage>(9)->GetPixel({ { 0, 0, 0 } }));
   EXPECT_EQ(ReadLabels(Path("a.nii"))->GetPixel({ { 0, 0, 0 } }), 5);
@@ -256,7 +256,7 @@ TEST_F(RegionReadingTest, CompressedVoxelsAreEnteredPastTheBeginning)
 {
   // Of 6 MB: what was scanned is entered every 2 MB.
   const auto image = MakeNoise<CTImage>(200);
-  WriteImage(image, Path("a.nii"));
+  bone::WriteImage(image, Path("a.nii"));
   const std::string text = ReadText("a.nii");
   Pack("one.nii.gz", text);
   Pack("several.nii.gz", text.substr(0, text.size() / 2));
@@ -278,7 +278,7 @@ TEST_F(RegionReadingTest, CompressedVoxelsAreEnteredPastTheBeginning)
 
 TEST_F(RegionReadingTest, WhatFollowsTheVoxelsIsPassedOverAsByGzip)
 {
-  WriteImage(MakeNoise<CTImage>(9), Path("a.nii"));
+  bone::WriteImage(MakeNoise<CTImage>(9), Path("a.nii"));
   const std::string text = ReadText("a.nii");
   Pack("b.nii.gz", text + "more");
   Pack("c.nii.gz", text);
@@ -294,12 +294,12 @@ TEST_F(RegionReadingTest, FilesCutShortAreRefusedBeforeARegionIsRead)
 {
   for (const char * name : { "a.nii", "a.nii.gz", "a.mha", "a.nrrd" })
   {
-    WriteImage(MakeNoise<CTImage>(9), Path(name));
+    bone::WriteImage(MakeNoise<CTImage>(9), Path(name));
     ExpectCutRefused(name, name);
-    WriteImage(MakeNoise<LabelImage>(9), Path(name));
+    bone::WriteImage(MakeNoise<LabelImage>(9), Path(name));
     ExpectCutRefused(name, name);
   }
-  WriteImage(MakeNoise<CTImage>(9), Path("b.mhd"));
+  bone::WriteImage(MakeNoise<CTImage>(9), Path("b.mhd"));
   ExpectCutRefused("b.mhd", "b.raw");
 }
 
@@ -310,7 +310,7 @@ TEST_F(RegionReadingTest, VoxelsThatAreNotFiniteAreRefusedWhereverTheyAre)
   ct->SetPixel({ { 5, 3, 8 } }, -std::numeric_limits<float>::infinity());
   for (const char * name : { "a.nii", "a.nii.gz", "a.mha", "a.nrrd", "a.hdr" })
   {
-    WriteImage(ct, Path(name));
+    bone::WriteImage(ct, Path(name));
     EXPECT_THAT(ErrorOfOpening(name), HasSubstr("has 2 voxels that are NaN or infinite, the first at [2, 3, 7]"));
   }
 }
@@ -334,7 +334,7 @@ TEST_F(RegionReadingTest, LabelsAreReadByRegionsAndKeepWhatTheirHeaderStates)
 {
   auto labels = MakeNoise<LabelImage>(9);
   StateOneBone(*labels);
-  WriteImage(labels, Path("l.nii.gz"));
+  bone::WriteImage(labels, Path("l.nii.gz"));
   const LabelFile file = OpenLabelFile(Path("l.nii.gz"));
   ASSERT_EQ(file.layers.size(), 1u);
   EXPECT_EQ(file.layers.front()->GetBufferedRegion().GetNumberOfPixels(), 0u);
@@ -350,7 +350,7 @@ TEST_F(RegionReadingTest, WhatIsNoLabelIsToldWhereItIsRead)
 {
   const auto ct = MakeNoise<CTImage>(9);
   ct->SetPixel({ { 1, 2, 7 } }, 0.5f);
-  WriteImage(ct, Path("l.mha"));
+  bone::WriteImage(ct, Path("l.mha"));
   const LabelFile file = OpenLabelFile(Path("l.mha"));
   EXPECT_NO_THROW(Part(file.layers.front().GetPointer(), Region({ { 0, 0, 0 } }, { { 96, 80, 7 } })));
   EXPECT_THAT(ErrorOf([&] {

@@ -238,7 +238,7 @@ TEST_F(XRayIO, OtherImagesAreReadWithoutAView)
   image->SetRegions(region);
   image->Allocate();
   image->FillBuffer(2.5f);
-  WriteImage(image.GetPointer(), Path("r.mha"));
+  bone::WriteImage(image.GetPointer(), Path("r.mha"));
   const auto file = ReadXRay(Path("r.mha"));
   EXPECT_FALSE(file.view.has_value());
   EXPECT_EQ(file.values, RadiographValues::Integral);
