@@ -74,7 +74,8 @@ HasDetachedVoxels(const std::string & path);
 
 /** Write the whole file (with its data file, for formats of two) or none; the format is that of the name's extension
  * (.nii.gz, .mha, .nrrd, .png, ...). What was written is read back before it takes its name, since not every format's
- * writer notices a full disk. Label maps are compressed where the format can. */
+ * writer notices a full disk. Label maps are compressed where the format can. Where itkImageFileWriter.h is included
+ * too, write bone::WriteImage: with a smart pointer, the name alone means ITK's function, which does none of this. */
 void
 WriteImage(const CTImage * image, const std::string & path);
 void
