@@ -27,10 +27,11 @@ function(bonetk_compile_settings target)
 endfunction()
 
 # A test's own code is compiled in half the time with few optimisations, with which GCC sees less of what is initialised;
-# the libraries have all of theirs.
+# the libraries have all of theirs. The header that is precompiled for tests has to have the same options.
+set(BONETK_TEST_OPTIONS $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 function(bonetk_test_settings target)
   bonetk_compile_settings(${target})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)
+  target_compile_options(${target} PRIVATE ${BONETK_TEST_OPTIONS})
   bonetk_precompile_tests(${target})
   bonetk_unity_build(${target} 12)
 endfunction()

@@ -29,7 +29,7 @@ if(BONETK_PRECOMPILE)
   if(BUILD_TESTING)
     add_executable(bonePrecompiledTests EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/precompiled.cxx)
     target_link_libraries(bonePrecompiledTests PRIVATE GTest::gtest GTest::gmock)
-    target_compile_options(bonePrecompiledTests PRIVATE $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized) # those of bonetk_test_settings
+    target_compile_options(bonePrecompiledTests PRIVATE ${BONETK_TEST_OPTIONS})
     bonetk_precompiled_target(bonePrecompiledTests <gmock/gmock.h> <gtest/gtest.h>)
   endif()
 endif()

@@ -22,7 +22,7 @@ Overwrite(std::string & bytes, std::size_t at, T value)
   std::memcpy(&bytes[at], &value, std::min(sizeof(T), bytes.size() - at));
 }
 
-const char * const WrongNumbers[] = {
+const char * const WildWords[] = {
   "1e300",  "-1e300", "nan",  "inf",  "-1", "0",     "4294967296", "99999999999999999999",
   "1e-300", "0x10",   "<a>",  "]]",   "[[", "{",     "\"",         "\n",
   "%d",     ",",      "LIST", "true", "\\", "null,", "../",        "1e9"
@@ -121,7 +121,7 @@ Mutator::DamageOnce(std::string & bytes)
       bytes.resize(at);
       return;
     case 8:
-      bytes.insert(at, WrongNumbers[Below(std::size(WrongNumbers))]);
+      bytes.insert(at, WildWords[Below(std::size(WildWords))]);
       return;
     default:
     {
@@ -130,7 +130,7 @@ Mutator::DamageOnce(std::string & bytes)
       if (digit != std::string::npos)
       {
         const std::size_t end = std::min(bytes.find_first_not_of("0123456789.", digit), bytes.size());
-        bytes.replace(digit, end - digit, WrongNumbers[Below(std::size(WrongNumbers))]);
+        bytes.replace(digit, end - digit, WildWords[Below(std::size(WildWords))]);
       }
     }
   }

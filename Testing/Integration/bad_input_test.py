@@ -129,7 +129,7 @@ class BadInput(TestCase):
 
 class BadUsage(TestCase):
     def test_every_number_is_decimal(self):
-        """Of every numeric option of every command: nothing is refused, and in turn hexadecimal, trailing characters, words."""
+        """Of every numeric option of every command: an empty text is refused, and in turn hexadecimal, trailing characters, words."""
         wrongs = itertools.cycle(("0x8", "8x", "1e", "eight"))
         numeric = 0
         _, help_text, _ = bonetk("--help")
