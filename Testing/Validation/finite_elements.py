@@ -244,7 +244,7 @@ CalculiX (SPOOLES). Closed forms (bar, bar of changing modulus, cantilever, ball
 
 Levels 2 and 3 are those of `simplify --improve-angles`, and beside them those without it. Held at the nodes of `END_LOW_Z`; 1 N
 downward, spread over 20 mm around the highest point of the surface, as one integral of the traction for all meshes. Stiffness:
-force by mean displacement under it. C3D10 have ten nodes, C3D4 four. Seconds: clock, other work going on.
+force by mean displacement under it. C3D10 have ten nodes, C3D4 four. Seconds: clock.
 
 {levels}
 ## Bins and nodes

@@ -92,8 +92,8 @@ def main():
 
 PAGE = """# Pages
 
-{made_by}, Chromium drawing without a graphics card, other work going
-on. Pages are those of `bonetk build` with its defaults: three levels, all contours, CT slices, pictures and charts.
+{made_by}, Chromium drawing without a graphics
+card. Pages are those of `bonetk build` with its defaults: three levels, all contours, CT slices, pictures and charts.
 
 {table}
 First frame: from the start of loading the page to its first picture, median of five (limit 3 s). Cut: axial, coronal and sagittal

@@ -380,8 +380,8 @@ def time_part(validation, bone):
     slope = numpy.polyfit(numpy.log(sizes), numpy.log(seconds), 1)[0]
     against = numpy.polyfit(numpy.log(numpy.array(sizes) * numpy.log(sizes)), numpy.log(seconds), 1)[0]
     return "\n".join([f"## Time, {bone.name}\n", table(("cells", "processor time, s", "clock, s", "µs a cell"), rows),
-                      "To a fifth and a thirteenth of the cells (33,000: to 6,138 and 2,438), with two threads; the least of two or three runs,",
-                      f"other work going on. Processor time grows as n^{slope:.2f}, or (n log n)^{against:.2f}.\n"])
+                      "To a fifth and a thirteenth of the cells (33,000: to 6,138 and 2,438), with two threads; the least of two or three runs.",
+                      f"Processor time grows as n^{slope:.2f}, or (n log n)^{against:.2f}.\n"])
 
 
 def main():

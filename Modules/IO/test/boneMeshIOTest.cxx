@@ -395,6 +395,52 @@ TEST_F(SurfaceIOTest, RefusesOpenAndBrokenSurfaces)
   EXPECT_THAT(ErrorOf([&] { ReadTriangleSurface(Path("no.ply")); }), HasSubstr("there is no such file"));
 }
 
+// A tetrahedron's, its coordinates no short decimals.
+TriangleSurface
+SmallSurface()
+{
+  TriangleSurface surface;
+  surface.points = { { 0.1, 0.2, 0.3 }, { 1.0 / 3.0, 0.2, 0.3 }, { 0.1, 1e-9 + 2.0, 0.3 }, { 0.1, 0.2, 5e5 / 7.0 } };
+  surface.triangles = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } };
+  return surface;
+}
+
+TEST_F(SurfaceIOTest, WritesWhatItReads)
+{
+  const TriangleSurface surface = SmallSurface();
+  WriteTriangleSurface(surface, {}, Path("s.vtp"));
+  EXPECT_EQ(ReadTriangleSurface(Path("s.vtp")), surface);
+}
+
+TEST_F(SurfaceIOTest, WritesPointDataOfWhichTheFirstAreActive)
+{
+  const std::vector<double> thickness{ 1.5, 2.5, 3.5, std::numeric_limits<double>::quiet_NaN() };
+  WriteTriangleSurface(
+    SmallSurface(), { { "thickness", thickness }, { "status", std::vector<int>{ 1, 1, 1, 0 } } }, Path("s.vtp"));
+  const std::string text = ReadText("s.vtp");
+  EXPECT_THAT(text, HasSubstr("<PointData Scalars=\"thickness\">"));
+  EXPECT_THAT(text, HasSubstr("type=\"Float64\" Name=\"thickness\""));
+  EXPECT_THAT(text, HasSubstr("RangeMin=\"1.5\""));
+  EXPECT_THAT(text, HasSubstr("RangeMax=\"3.5\""));
+  EXPECT_THAT(text, HasSubstr("type=\"Int32\" Name=\"status\""));
+  EXPECT_EQ(ReadTriangleSurface(Path("s.vtp")), SmallSurface());
+}
+
+TEST_F(SurfaceIOTest, RefusesAnArrayOfAnotherSizeAndLeavesTheFileAsItWas)
+{
+  const auto error = [&](const std::string & name, std::size_t count) {
+    return ErrorOf([&] { WriteTriangleSurface(SmallSurface(), { { "t", std::vector<double>(count) } }, Path(name)); });
+  };
+  WriteText("s.vtp", "older");
+  for (const std::size_t count : { 0u, 3u, 5u })
+  {
+    EXPECT_THAT(error("s.vtp", count),
+                HasSubstr("s.vtp: the array 't' has " + std::to_string(count) + " values for 4 points"));
+  }
+  EXPECT_EQ(ReadText("s.vtp"), "older");
+  EXPECT_THAT(error("s.ply", 4), HasSubstr("must end in .vtp"));
+}
+
 TEST(SurfaceIORealData, ReadsAFemur)
 {
   const char * folder = std::getenv("BONETK_DATA");

@@ -36,6 +36,19 @@ SamplesOf(const BlurredCortex & cortex, double noise = 0.0, unsigned int seed = 
   return samples;
 }
 
+// Root mean square of what is left.
+double
+Residual(const std::vector<CorticalSample> & samples, const BlurredCortex & cortex)
+{
+  double sum = 0.0;
+  for (const CorticalSample & sample : samples)
+  {
+    const double off = cortex(sample.depth) - sample.value;
+    sum += off * off;
+  }
+  return std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
 CorticalFitRules
 Known()
 {
@@ -112,6 +125,39 @@ TEST(CorticalFit, NoiseMovesTheThicknessLittleAndNotToOneSide)
     }
     EXPECT_NEAR(sum / 50.0, 0.0, 0.01) << thickness;
     EXPECT_LT(largest, 0.06) << thickness;
+  }
+}
+
+// With noise the residuals are not zero, and a wrong derivative ends elsewhere.
+TEST(CorticalFit, NoSmallChangeOfAParameterFitsNoisySamplesBetter)
+{
+  CorticalFitRules rules;
+  rules.outsideReach = rules.insideReach = 20.0; // all samples count
+  for (unsigned int seed = 1; seed <= 5; ++seed)
+  {
+    const auto        samples = SamplesOf(Cortex(2.5), 60.0, seed);
+    const CorticalFit fit = FitCortex(samples, rules);
+    ASSERT_EQ(fit.status, CorticalStatus::Found);
+    ASSERT_NEAR(Residual(samples, fit.cortex), fit.residual, 1e-9);
+    double BlurredCortex::*const lengths[] = { &BlurredCortex::outer, &BlurredCortex::thickness, &BlurredCortex::blur };
+    double BlurredCortex::*const levels[] = { &BlurredCortex::outside,
+                                              &BlurredCortex::cortical,
+                                              &BlurredCortex::inside };
+    for (const double sign : { -1.0, 1.0 })
+    {
+      for (const auto member : lengths)
+      {
+        BlurredCortex changed = fit.cortex;
+        changed.*member += sign * 1e-3;
+        EXPECT_GT(Residual(samples, changed), fit.residual) << seed << ", a length, " << sign;
+      }
+      for (const auto member : levels)
+      {
+        BlurredCortex changed = fit.cortex;
+        changed.*member += sign;
+        EXPECT_GT(Residual(samples, changed), fit.residual) << seed << ", a level, " << sign;
+      }
+    }
   }
 }
 
