@@ -2,7 +2,7 @@
 """The acceptance figures of the density fit: the paper's Table 2, Figure 9 and Table 3, on a hip bone and a phantom.
 
 Builds the models (or takes those built before: MODEL=folder of the hip bone's, PHANTOM=folder of the phantom's), fits every
-degree with boneDensityValidation, checks degrees 0 to 6 with check_mesh.py where CHECK names it, and writes
+degree with boneDensityValidation, checks degrees 0 to 6 with an independent checker where CHECK names one, and writes
 Documentation/validation/density.md with density_phantom.png (needs matplotlib). Models lie in the folder WORK, where that is
 named, and stay there. Environment: BONETK, BONETK_DATA,
 BONETK_VALIDATION (boneDensityValidation), BONETK_BENCHMARKS (boneDensityBenchmarks; without it there is no table of speed).
@@ -122,12 +122,12 @@ against the trilinearly interpolated CT, which is blurred itself; at held-out vo
                      f"{percent(entry, 'region2'):.2f}", f"{100 * entry['cut'] / entry['all']['range']:.2f}",
                      f"{entry['heldOut']['percent']:.2f}", f"{spline[n]['all']['percent']:.2f}",
                      f"{spline[n]['heldOut']['percent']:.2f}"))
-    text += table(("degree", "all voxels", "check_mesh", "bound, met", "unlayered mesh", "cortical", "trabecular", "plane",
+    text += table(("degree", "all voxels", "independent check", "bound, met", "unlayered mesh", "cortical", "trabecular", "plane",
                    "held out", "B-spline", "B-spline, held out"), rows)
     missed = [n for n, row in enumerate(checked) if row[0] > BOUNDS[n] or row[1] > 1.5]
     if checked:
         text += f"""
-By check_mesh.py the label's uncovered voxels are {checked[0][1]:.2f} % (bound 1.5), and the bounds are \
+By the independent check the label's uncovered voxels are {checked[0][1]:.2f} % (bound 1.5), and the bounds are \
 {'met at every degree' if not missed else "missed at degree " + ", ".join(map(str, missed))}.
 """
     text += f"""
