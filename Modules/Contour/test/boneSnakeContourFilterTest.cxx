@@ -355,6 +355,32 @@ TEST(SnakeContourFilter, RefusesBadInputInPlainWords)
   EXPECT_THAT(message(drawn), HasSubstr("not parallel"));
 }
 
+TEST(SnakeContourFilter, TellsHeightsAndEndsAsTheyAreInThePlacement)
+{
+  struct Case
+  {
+    Placement    placement;
+    const char * height; // of -60 mm
+    const char * end;    // of the first slice
+  };
+  const Eigen::Matrix3d turned = Vector3(1.0, -1.0, -1.0).asDiagonal();
+  const Case            cases[] = { { {}, "at -60 mm", "at its first slice" },
+                                    { { Eigen::Matrix3d::Identity(), { 1.0, 2.0, 300.0 } }, "at 240 mm", "at its first slice" },
+                                    { { turned, { 1.0, 2.0, 300.0 } }, "at 360 mm", "at its last slice" } };
+  const auto            ends = [](double x, double y, double z) { return z < 20.0 ? BowedTube(x, y, z) : 50.0; };
+  for (const Case & c : cases)
+  {
+    auto filter = Filter::New();
+    filter->SetInput(MakeImage<TestCT>(TestGrid(), ends));
+    filter->SetPlacement(c.placement);
+    filter->SetInitialContours(StartContour(*ContourStack::New(), Ellipse(9.0, 9.0, 60), -60.0));
+    EXPECT_THAT(MessageOf([&] { filter->Update(); }), HasSubstr(c.height));
+    filter->SetInitialContours(StartContour(*ContourStack::New(), Ellipse(9.0, 9.0, 60), 7.0));
+    filter->Update();
+    EXPECT_THAT(filter->GetWarnings(), testing::Contains(HasSubstr(c.end)));
+  }
+}
+
 template <typename TPixel>
 class SnakeContourFilterTypes : public testing::Test
 {
