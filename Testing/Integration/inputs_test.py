@@ -218,6 +218,33 @@ class Labels(TestCase):
         self.refuse(*build, "part.nii.gz", "-o", "out", says="does not cover the CT")
         self.succeed("drr", "ct.nii.gz", "--mask", "wide.nii.gz", "--geometry", self.view(), "-o", "o.mha")
 
+    def test_inputs_that_do_not_belong_together(self):
+        """Told quiet or not, and kept; right ones are not doubted."""
+        write_image("shifted.nii.gz", numpy.roll(self.labels, 9, axis=1), SPACING)
+        write_image("offset.nii.gz", self.ct + 1024, SPACING)
+        build = ["build", "--label", "25", *SMALL, "--no-page", "--quiet", "-o", "out", "--force", "--labels"]
+        for ct, labels, doubt in (("ct", "labels", None), ("ct", "shifted", "do CT and label map belong together?"),
+                                  ("offset", "labels", "are its values HU?")):
+            _, told = self.succeed(*build, f"{labels}.nii.gz", f"{ct}.nii.gz")
+            report = read_json("out/report.json")
+            self.assertEqual(report["shareOfTheOutlineBrighterInside"] > 0.65, labels == "labels")
+            _, of_contours = self.succeed("contours", f"{ct}.nii.gz", "--labels", f"{labels}.nii.gz", "--label", "25",
+                                          "--quiet", "-o", "c.vtp")
+            for text in (told, of_contours, " ".join(report["warnings"])):
+                if doubt:
+                    self.assertIn(doubt, text)
+                else:
+                    self.assertNotIn("?", text)
+            if not doubt:
+                os.rename("out/model_L1.vtu", "right.vtu")
+        self.succeed("build", "ct.nii.gz", "--labels", "shifted.nii.gz", "--label", "25", *SMALL, "--no-page", "-q",
+                     "-o", "other")
+        _, told = self.succeed("fit", "ct.nii.gz", "right.vtu", "-q", "-o", "f.vtu", "--report", "f.json")
+        self.assertEqual(told, "")
+        self.assertGreater(read_json("f.json")["shareOfTheOutlineBrighterInside"], 0.9)
+        _, told = self.succeed("fit", "ct.nii.gz", "other/model_L1.vtu", "-q", "-o", "f.vtu")
+        self.assertIn("do CT and mesh belong together?", told)
+
     def test_a_closed_surface(self):
         from vtkmodules.vtkFiltersSources import vtkSphereSource
         from vtkmodules.vtkFiltersCore import vtkCleanPolyData

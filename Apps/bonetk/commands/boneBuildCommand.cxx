@@ -201,12 +201,28 @@ VerifyFolder(const std::string & folder)
 Resolution
 Plan(const BuildInput & input, const BuildParameters & parameters, BuildPipeline & pipeline, Session & session)
 {
-  const auto resolution = PlanBuild(input, parameters, pipeline, [&](const Resolution & tried, IdType count) {
-    std::ostringstream line;
-    line << "slices " << tried.sliceStep << " mm, contour points at most " << tried.contourSpacing
-         << " mm apart: about " << count << " tetrahedra\n";
-    session.Print(line.str());
-  });
+  const auto doubt = [&] {
+    for (const std::string & line : pipeline.GetSnake()->GetReport().doubts)
+    {
+      session.WarnAlways(line);
+    }
+  };
+  Resolution resolution;
+  try
+  {
+    resolution = PlanBuild(input, parameters, pipeline, [&](const Resolution & tried, IdType count) {
+      std::ostringstream line;
+      line << "slices " << tried.sliceStep << " mm, contour points at most " << tried.contourSpacing
+           << " mm apart: about " << count << " tetrahedra\n";
+      session.Print(line.str());
+    });
+  }
+  catch (...)
+  {
+    doubt(); // it may be why
+    throw;
+  }
+  doubt();
   for (const std::string & warning : pipeline.GetWarnings())
   {
     session.Warn(warning);
@@ -323,6 +339,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   const ContourStack * slices = pipeline.GetSlices()->GetOutput();
   report.slices = slices->GetSlices().size();
   report.meanSliceDistance = slices->GetMeanSliceDistance();
+  report.brighterShare = pipeline.GetSnake()->GetReport().brighterShare;
   report.tiling = pipeline.GetTiling()->GetReport();
   report.levels = evaluation.levels;
   for (const std::string & doubt : FindDoubts(plan, report.levels))

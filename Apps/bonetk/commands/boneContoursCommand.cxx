@@ -104,9 +104,8 @@ RunContours(const ContoursOptions & options, Session & session)
     session.Watch(filter, name);
   }
   // From a few slices the bone is followed through all of the CT.
-  const BuildInput input = parameters.contours.followLabel
-                             ? BuildInput{ ct, read.bone.labels, read.contours, 0.0 }
-                             : CropToBone(ct, read.bone, read.contours, parameters.plan);
+  const BuildInput input = parameters.contours.followLabel ? BuildInput{ ct, read.bone.labels, read.contours, 0.0 }
+                                                           : CropToBone(ct, read.bone, read.contours, parameters.plan);
   if (options.tetrahedra)
   {
     PlanBuild(input, parameters, pipeline, [&session](const Resolution &, IdType tried) {
@@ -119,6 +118,10 @@ RunContours(const ContoursOptions & options, Session & session)
   }
   pipeline.GetContours()->Update();
   const ContourStack * contours = pipeline.GetContours();
+  for (const std::string & doubt : pipeline.GetSnake()->GetReport().doubts)
+  {
+    session.WarnAlways(doubt);
+  }
   for (const auto & warnings : { pipeline.GetSnake()->GetWarnings(), pipeline.GetResample()->GetWarnings() })
   {
     std::for_each(warnings.begin(), warnings.end(), [&session](const std::string & line) { session.Warn(line); });

@@ -81,6 +81,7 @@ DescribeFit(Fit & fit, const CTImage & ct)
   report["tetrahedraWithFewerVoxelsThanCoefficients"] = found.sparse;
   report["tetrahedraWithoutWeight"] = found.unsupported;
   report["shareOfSamplesOutsideTheImage"] = fit.GetOutsideFraction();
+  report["shareOfTheOutlineBrighterInside"] = fit.GetContrast().GetBrighterShare();
   report["overshoot"] = { { "median", found.overshootMedian },
                           { "percentile90", found.overshoot90 },
                           { "largest", found.overshootMaximum },
@@ -117,6 +118,10 @@ RunFit(const FitOptions & options, Session & session)
   fit->SetParameters(options.parameters);
   session.Watch(fit, "density fit");
   fit->Update();
+  for (const std::string & doubt : fit->GetDoubts())
+  {
+    session.WarnAlways(doubt);
+  }
   if (fit->GetReport().unsupported > 0)
   {
     session.Warn(std::to_string(fit->GetReport().unsupported) +

@@ -60,9 +60,11 @@ struct ToldHeight
 /** What happened on all slices, and what a person should know. */
 struct ExtractionReport
 {
-  ToldHeight               told; ///< in warnings and errors
+  ToldHeight               told;                 ///< in warnings and errors
+  double                   brighterShare{ 1.0 }; ///< of the outline, see \ref OutlineContrast
   std::vector<SliceReport> slices;
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts; ///< those of the warnings that say that the input may be a wrong one
 };
 
 /** \brief A box of voxels in space: voxel (i, j, k) is centred at origin + direction * (i, j, k) .* spacing (mm). */

@@ -168,6 +168,28 @@ SetOpenEnds(const SliceFrame &           frame,
     report.warnings.push_back("The bone leaves the image at the border of its slices; it is cut there.");
   }
 }
+
+/** Share of the area within the outer contours that their holes take. */
+double
+ShareOfHoles(const std::vector<Section> & sections)
+{
+  double whole = 0.0, holes = 0.0;
+  for (const Section & section : sections)
+  {
+    for (const SectionPiece & piece : section.pieces)
+    {
+      whole += SignedArea(piece.outer);
+      for (const Polygon & hole : piece.holes)
+      {
+        holes -= SignedArea(hole);
+      }
+    }
+  }
+  return whole > 0.0 ? holes / whole : 0.0;
+}
+
+/** More holes than a vertebra's (some 0.25 of its area) are told. */
+constexpr double MostHoles = 0.4;
 } // namespace
 
 void
@@ -214,13 +236,30 @@ ExtractContours(const SliceFrame &             frame,
   {
     PropagateSections(sections, planes, frame.pixel, parameters, execution.Part(0.4, 0.6), report);
   }
-  FinishSections(sections, planes, frame.pixel, parameters, execution.Part(0.6, 0.95), report);
+  FinishSections(sections, planes, frame.pixel, parameters, execution.Part(0.6, 0.93), report);
   if (sections.empty())
   {
     throw std::runtime_error(std::string("No contour is left: ") +
                              (label != nullptr ? "the label has too few voxels, or they do not hang together."
                                                : "the initial contours found no edge of bone to rest on."));
   }
+  const OutlineContrast contrast = MeasureContrast(sections, planes, frame.pixel, execution.Part(0.93, 0.95));
+  report.brighterShare = contrast.GetBrighterShare();
+  if (const double share = label != nullptr ? ShareOfHoles(sections) : 0.0; share > MostHoles)
+  {
+    report.doubts.push_back("Holes take " + std::to_string(std::lround(100.0 * share)) +
+                            " % of the area within the outlines: is the label map that of the cortex alone? A bone is "
+                            "to be labelled whole, with its marrow.");
+  }
+  for (const std::string & line :
+       { contrast.FindMismatch(label != nullptr ? "label map" : "initial contours"), contrast.FindForeignUnits() })
+  {
+    if (!line.empty())
+    {
+      report.doubts.push_back(line);
+    }
+  }
+  report.warnings.insert(report.warnings.end(), report.doubts.begin(), report.doubts.end());
   contours.SetFrame(frame.u, frame.v);
   contours.SetSlices(ToSlices(sections, contours));
   SetOpenEnds(frame, sections, contours, report);

@@ -381,6 +381,40 @@ TEST(SnakeContourFilter, TellsHeightsAndEndsAsTheyAreInThePlacement)
   }
 }
 
+TEST(SnakeContourFilter, DoubtsALabelThatLiesBesideTheBone)
+{
+  const TestGrid grid;
+  auto           filter = FromLabel(grid);
+  filter->Update();
+  EXPECT_GT(filter->GetReport().brighterShare, 0.99);
+  EXPECT_THAT(filter->GetReport().doubts, testing::IsEmpty());
+  filter->SetLabelImage(
+    MakeImage<TestLabels>(grid, [](double x, double y, double z) { return BowedLabel(x - 6.0, y, z); }));
+  filter->Update();
+  EXPECT_LT(filter->GetReport().brighterShare, 0.65);
+  ASSERT_THAT(filter->GetReport().doubts, testing::ElementsAre(HasSubstr("do CT and label map belong together?")));
+  EXPECT_THAT(filter->GetWarnings(), testing::Contains(filter->GetReport().doubts.front()));
+  // A bone that leaves the image on all sides but one.
+  auto cut = FromLabel(grid);
+  cut->SetInput(MakeImage<TestCT>(grid, [](double x, double, double) { return x < 12.0 ? 700.0 : 40.0; }));
+  cut->SetLabelImage(MakeImage<TestLabels>(grid, [](double x, double, double) { return x < 12.0 ? 3 : 0; }));
+  cut->Update();
+  EXPECT_GT(cut->GetReport().brighterShare, 0.99);
+}
+
+TEST(SnakeContourFilter, DoubtsValuesThatAreNotHU)
+{
+  const TestGrid grid;
+  auto           filter = FromLabel(grid);
+  filter->SetInput(MakeImage<TestCT>(grid, [](double x, double y, double z) { return 1024.0 + BowedTube(x, y, z); }));
+  filter->Update();
+  EXPECT_THAT(filter->GetReport().doubts, testing::ElementsAre(HasSubstr("are its values HU?")));
+  filter->SetInput(
+    MakeImage<TestCT>(grid, [](double x, double y, double z) { return std::min(255.0, BowedTube(x, y, z)); }));
+  filter->Update();
+  EXPECT_THAT(filter->GetReport().doubts, testing::ElementsAre(HasSubstr("not a display window's?")));
+}
+
 template <typename TPixel>
 class SnakeContourFilterTypes : public testing::Test
 {

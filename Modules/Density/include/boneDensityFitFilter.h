@@ -9,6 +9,7 @@
 
 #include <itkImage.h>
 
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -82,6 +83,13 @@ public:
   /** After an update: what the fit found. With MaximumError its samples are those of all degrees tried. */
   itkGetConstReferenceMacro(Report, DensityFitReport);
 
+  /** After an update: a line for each reason to think that the mesh and the image do not belong together. */
+  std::vector<std::string>
+  GetDoubts() const;
+
+  /** After an update: what the image has on both sides of the mesh's surface. */
+  itkGetConstReferenceMacro(Contrast, OutlineContrast);
+
   /** After an update: the number of coefficients, those of the spline's own basis with Continuous and
    * ContinuousGradient. */
   itkGetConstMacro(NumberOfFreeCoefficients, std::size_t);
@@ -124,7 +132,11 @@ private:
   std::size_t
   FitSpline(MeshArrays & arrays, const Execution & execution);
 
+  /** More is told. A bone that is cut by the image ends within half a voxel of it. */
+  static constexpr double LargestOutsideFraction = 0.01;
+
   DensityFitReport m_Report;
+  OutlineContrast  m_Contrast;
   std::size_t      m_NumberOfFreeCoefficients{ 0 };
 };
 

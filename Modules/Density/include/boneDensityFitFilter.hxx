@@ -190,6 +190,25 @@ DensityFitFilter<TImage, TMesh>::Fit(MeshArrays & arrays, const Execution & exec
   {
     itkExceptionMacro("The input 'Image' has voxels in the mesh that are not finite: repair it first.");
   }
+  m_Contrast = MeasureSurfaceContrast(arrays, from.grid, from.voxels);
+}
+
+template <typename TImage, typename TMesh>
+std::vector<std::string>
+DensityFitFilter<TImage, TMesh>::GetDoubts() const
+{
+  std::vector<std::string> doubts;
+  if (const std::string line = m_Contrast.FindMismatch("mesh"); !line.empty())
+  {
+    doubts.push_back(line);
+  }
+  if (this->GetOutsideFraction() > LargestOutsideFraction)
+  {
+    doubts.push_back(
+      std::to_string(std::lround(100.0 * this->GetOutsideFraction())) +
+      " % of the mesh lie outside the image, and have the values of its border: are both of the same scan?");
+  }
+  return doubts;
 }
 
 template <typename TImage, typename TMesh>

@@ -7,6 +7,7 @@
 #include "boneDensityFitParameters.h"
 #include "boneExecution.h"
 #include "boneMeshArrays.h"
+#include "boneOutlineContrast.h"
 #include "boneVoxelGrid.h"
 
 #include <functional>
@@ -60,6 +61,10 @@ FitDensity(MeshArrays &                 mesh,
            const DensityFitImage &      image,
            const DensityFitParameters & parameters,
            const Execution &            execution);
+
+/** What the image has on both sides of the mesh's surface, by one place a face. */
+OutlineContrast
+MeasureSurfaceContrast(const MeshArrays & mesh, const VoxelGrid & grid, const ImageSampler & values);
 
 /** Draws control values of a polynomial in until none lies further than `margin` beyond [low, high]: parts of the
  * highest degrees are reduced first, and the mean is kept. Returns whether there was anything to do. */

@@ -579,6 +579,48 @@ FitDensity(MeshArrays &                 mesh,
   return report;
 }
 
+OutlineContrast
+MeasureSurfaceContrast(const MeshArrays & mesh, const VoxelGrid & grid, const ImageSampler & values)
+{
+  const double          pixel = grid.axes.colwise().norm().maxCoeff();
+  const double          inward = 0.5 * pixel, outward = OutlineContrast::ReachOutside(pixel);
+  const Eigen::Matrix3d toIndex = grid.axes.inverse();
+  std::vector<Vector3>  places; // inside and outside in turn
+  std::vector<double>   areas;
+  MeshArrays            joined;
+  if (mesh.neighbors.empty())
+  {
+    joined.tetrahedra = mesh.tetrahedra;
+    joined.neighbors = ComputeFaceNeighbors(mesh.tetrahedra);
+  }
+  for (const auto & face : BoundaryFaces(mesh.neighbors.empty() ? joined : mesh))
+  {
+    const Vector3 & a = mesh.points[face[0]];
+    const Vector3   normal = (mesh.points[face[1]] - a).cross(mesh.points[face[2]] - a);
+    const double    area = normal.norm();
+    if (area > 0.0)
+    {
+      const Vector3 middle = (a + mesh.points[face[1]] + mesh.points[face[2]]) / 3.0;
+      places.push_back(toIndex * (middle - inward / area * normal - grid.origin));
+      places.push_back(toIndex * (middle + outward / area * normal - grid.origin));
+      areas.push_back(area);
+    }
+  }
+  std::vector<double> found(places.size());
+  values(places.data(), places.size(), found.data());
+  const Vector3   last(grid.size[0] - 1.0, grid.size[1] - 1.0, grid.size[2] - 1.0);
+  OutlineContrast contrast;
+  for (std::size_t k = 0; k < areas.size(); ++k)
+  {
+    const Vector3 & beyond = places[2 * k + 1];
+    if ((beyond.array() >= 0.0).all() && (beyond.array() <= last.array()).all())
+    {
+      contrast.Add(found[2 * k], found[2 * k + 1], areas[k]);
+    }
+  }
+  return contrast;
+}
+
 bool
 LimitControlValues(int degree, double low, double high, double margin, double * coefficients)
 {

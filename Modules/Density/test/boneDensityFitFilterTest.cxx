@@ -373,6 +373,41 @@ TEST(DensityFitFilter, TakesTheNearestValueBeyondTheImageAndSaysHowMuch)
   EXPECT_LT(filter->GetOutsideFraction(), 1);
 }
 
+TEST(DensityFitFilter, DoubtsAMeshThatIsNotOfTheImage)
+{
+  using Image = test::DoubleImage;
+  auto            image = Image::New();
+  Image::SizeType size = { { 40, 40, 40 } };
+  image->SetRegions(size);
+  image->Allocate();
+  for (itk::ImageRegionIteratorWithIndex<Image> it(image, image->GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  {
+    const auto index = it.GetIndex();
+    it.Set(std::all_of(index.begin(), index.end(), [](auto i) { return i > 10 && i < 30; }) ? 700.0 : 40.0);
+  }
+  const auto doubts = [&](const Vector3 & lower, bool neighbors) {
+    MeshArrays mesh = test::MakeBlock({ { 4, 4, 4 } }, lower, 5.0, 0.0);
+    mesh.neighbors = neighbors ? ComputeFaceNeighbors(mesh.tetrahedra) : std::vector<Id4>();
+    auto filter = MakeFit(mesh, image.GetPointer(), 1);
+    filter->SetSurfaceMargin(0.0);
+    filter->Update();
+    return std::pair(filter->GetContrast().GetBrighterShare(), filter->GetDoubts());
+  };
+  for (const bool neighbors : { false, true })
+  {
+    const auto [right, nothing] = doubts({ 10, 10, 10 }, neighbors);
+    EXPECT_DOUBLE_EQ(right, 1.0);
+    EXPECT_TRUE(nothing.empty());
+    const auto [beside, mismatch] = doubts({ 16, 16, 10 }, neighbors);
+    EXPECT_LT(beside, 0.6);
+    ASSERT_EQ(mismatch.size(), 1U);
+    EXPECT_NE(mismatch[0].find("do CT and mesh belong together?"), std::string::npos);
+  }
+  const auto out = doubts({ 10, 10, 25 }, true).second;
+  ASSERT_FALSE(out.empty());
+  EXPECT_NE(out.back().find("of the mesh lie outside the image"), std::string::npos);
+}
+
 void
 ExpectRefusal(itk::ProcessObject & filter, const std::string & words)
 {

@@ -62,6 +62,7 @@ struct BuildReport
   Resolution               resolution;
   std::size_t              slices{ 0 };
   double                   meanSliceDistance{ 0.0 }; ///< mm, between the slices kept
+  double                   brighterShare{ 1.0 };     ///< of the bone's outline in the CT, see \ref OutlineContrast
   TilingReport             tiling;
   std::vector<LevelReport> levels;
   std::vector<std::string> warnings;

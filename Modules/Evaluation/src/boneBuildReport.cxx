@@ -310,6 +310,7 @@ ToJson(const BuildReport & report)
                          { "askedSliceStepMm", report.resolution.sliceStep },
                          { "contourSpacingMm", report.resolution.contourSpacing } };
   json["slices"] = report.slices;
+  json["shareOfTheOutlineBrighterInside"] = report.brighterShare;
   json["tiling"] = ToJson(report.tiling);
   json["levels"] = nlohmann::ordered_json::array();
   for (const LevelReport & level : report.levels)

@@ -50,9 +50,10 @@ SetResolution(BuildPipeline & pipeline, const Resolution & resolution, const Res
  * tetrahedra within 8 % after the quality stage: in at most three rounds of at most six tilings, which end where the
  * number that is predicted (\ref PredictQuality) is that of the search within 5 %.
  * Leaves the best ones set and the quality stage up to date. Far from the number both are changed, near it the spacing
- * alone, which leaves the contours as they are, unless that changes the number too little. A resolution at which the
- * tiling fails is passed over; the last failure is thrown where all fail. `tried`, where it is not empty, is told of
- * each tiling and the number predicted. */
+ * alone, which leaves the contours as they are, unless that changes the number too little. Points do not come nearer
+ * than a tenth of the slice step, where too few tetrahedra are left. A resolution at which the tiling fails is passed
+ * over; the last failure is thrown where all fail. `tried`, where it is not empty, is told of each tiling and the
+ * number predicted. */
 Resolution
 AdjustResolution(BuildPipeline &                                         pipeline,
                  const Resolution &                                      start,

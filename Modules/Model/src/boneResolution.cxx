@@ -102,8 +102,14 @@ NextResolution(const Resolution & last, double ratio, double power, bool both, c
     next.sliceStep = std::max(search.sliceSpacing, last.sliceStep * std::sqrt(remaining));
     remaining *= last.sliceStep / next.sliceStep;
   }
-  // On fixed slices the number of tetrahedra goes with the number of samples, 1 / spacing.
+  // On fixed slices the number of tetrahedra goes with the number of samples, 1 / spacing. Samples much nearer than
+  // slices make needles, which the quality stage takes away again.
+  constexpr double leastShape = 0.1;
   next.contourSpacing = last.contourSpacing * std::clamp(remaining, 0.4, 2.5);
+  if (ratio < 1.0)
+  {
+    next.contourSpacing = std::max(next.contourSpacing, std::min(last.contourSpacing, leastShape * next.sliceStep));
+  }
   return next;
 }
 
@@ -182,7 +188,12 @@ AdjustTiling(BuildPipeline &                                         pipeline,
       both = both || done < 0.5;
     }
     former = ratio;
-    resolution = NextResolution(resolution, ratio, power, both, search);
+    const Resolution next = NextResolution(resolution, ratio, power, both, search);
+    if (next.sliceStep == resolution.sliceStep && next.contourSpacing == resolution.contourSpacing)
+    {
+      break; // as fine as it goes
+    }
+    resolution = next;
   }
   if (!best)
   {

@@ -313,6 +313,8 @@ class HierarchyLevelFilter(ProcessObject):
 class DensityFitFilter(ProcessObject):
     @property
     def outside_fraction(self) -> float: ...
+    @property
+    def doubts(self) -> _List[str]: ...
 
 class DensityCalibrationFilter(ProcessObject):
     laws: _List[str]

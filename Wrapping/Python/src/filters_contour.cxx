@@ -46,8 +46,9 @@ BindSnake(py::module_ & m)
     snake, "output", [](SnakeType & self) { return self.GetOutput(); }, "ContourStack.");
   AddReport(
     snake,
-    "After an update: a dict of slices (dicts of height, iterations, converged, energy, support and events) and "
-    "warnings.");
+    "After an update: a dict of slices (dicts of height, iterations, converged, energy, support and events), warnings, "
+    "doubts (the warnings by which the image may not belong to its start, or not be in HU) and brighter_share (of the "
+    "outline, where the image is brighter inside than outside).");
   snake.def_property_readonly("warnings", &SnakeType::GetWarnings, "What a person should know, after an update.");
 }
 } // namespace

@@ -41,6 +41,10 @@ BindFit(py::module_ & m)
   fit.def_property_readonly("outside_fraction",
                             &FitType::GetOutsideFraction,
                             "Share of the samples that lay beyond the image, after an update.");
+  fit.def_property_readonly(
+    "doubts",
+    &FitType::GetDoubts,
+    "After an update: a line for each reason to think that the mesh and the image do not belong together.");
 }
 
 void

@@ -34,7 +34,10 @@ DescribeReport(const ExtractionReport & report)
                            py::arg("support") = slice.support,
                            py::arg("events") = slice.events));
   }
-  return py::dict(py::arg("slices") = slices, py::arg("warnings") = report.warnings);
+  return py::dict(py::arg("slices") = slices,
+                  py::arg("warnings") = report.warnings,
+                  py::arg("doubts") = report.doubts,
+                  py::arg("brighter_share") = report.brighterShare);
 }
 
 py::dict

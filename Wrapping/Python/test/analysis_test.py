@@ -152,7 +152,8 @@ class Reports(unittest.TestCase):
 
     def test_every_filter_with_a_report_has_its_keys(self):
         for name, keys in {
-            "SnakeContourFilter": {"slices", "warnings"}, "ContourResampleFilter": {"samples", "largest_error"},
+            "SnakeContourFilter": {"slices", "warnings", "doubts", "brighter_share"},
+            "ContourResampleFilter": {"samples", "largest_error"},
             "ContourTilingMeshSource": {"slabs", "notes"}, "MeshQualityFilter": {"flips", "smoothing"},
             "TetraSmoothingFilter": {"moves", "refused"}, "TetraSwapFilter": {"done", "refused"},
             "AtlasRegistrationFilter": {"surface_distance", "untangling"}, "RadiographPreprocessFilter": {"open_beam"},

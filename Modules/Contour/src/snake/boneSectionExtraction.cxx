@@ -291,6 +291,46 @@ BrightestWithin(const std::vector<Section> & sections, const PlaneSource & plane
   return brightest;
 }
 
+OutlineContrast
+MeasureContrast(const std::vector<Section> & sections,
+                const PlaneSource &          planes,
+                const Vector2 &              pixel,
+                const Execution &            execution)
+{
+  const double inward = 0.5 * pixel.maxCoeff();
+  const double outward = OutlineContrast::ReachOutside(pixel.maxCoeff());
+  // Beyond the image there is nothing to compare.
+  const auto value = [](const PlaneField & plane, const Vector2 & q) {
+    const Vector2 last = plane.grid.Node(plane.grid.size[0] - 1, plane.grid.size[1] - 1);
+    const bool    within = (q - plane.grid.origin).minCoeff() >= 0.0 && (last - q).minCoeff() >= 0.0;
+    return within ? plane.Sample(q) : std::numeric_limits<double>::quiet_NaN();
+  };
+  std::vector<OutlineContrast> found(sections.size());
+  execution.For(sections.size(), [&](std::size_t k) {
+    for (const SectionPiece & piece : sections[k].pieces)
+    {
+      const PlaneField plane = PlaneAround({ piece.outer }, sections[k].height, outward, planes);
+      for (std::size_t i = 0; i < piece.outer.size(); ++i)
+      {
+        const Vector2 & a = piece.outer[i];
+        const Vector2   edge = piece.outer[(i + 1) % piece.outer.size()] - a;
+        const double    length = edge.norm();
+        if (length > 0.0)
+        {
+          const Vector2 middle = a + 0.5 * edge, outside = Vector2(edge.y(), -edge.x()) / length;
+          found[k].Add(value(plane, middle - inward * outside), value(plane, middle + outward * outside), length);
+        }
+      }
+    }
+  });
+  OutlineContrast all;
+  for (const OutlineContrast & one : found)
+  {
+    all.Add(one);
+  }
+  return all;
+}
+
 void
 RefineSections(std::vector<Section> &       sections,
                const PlaneSource &          planes,

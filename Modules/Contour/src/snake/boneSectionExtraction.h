@@ -5,6 +5,7 @@
 #define boneSectionExtraction_h
 
 #include "boneExtractionParameters.h"
+#include "boneOutlineContrast.h"
 #include "boneSection.h"
 
 namespace bone
@@ -23,6 +24,13 @@ PlaceSectionsThrough(const SliceRange & slices, double anchor, double step);
 /** The highest value of the CT in the pieces' bounding boxes; the search ends with a value that reaches `enough`. */
 double
 BrightestWithin(const std::vector<Section> & sections, const PlaneSource & planes, double enough);
+
+/** What the CT has on both sides of the pieces' outer contours, within their slices. */
+OutlineContrast
+MeasureContrast(const std::vector<Section> & sections,
+                const PlaneSource &          planes,
+                const Vector2 &              pixel,
+                const Execution &            execution);
 
 /** Moves the periosteal contours of sections, as they come from a label, to the CT's edges within
  * `parameters.refineDistance`. A slice where that makes contours cross keeps those it had, and its report says so. */
