@@ -17,11 +17,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace PipelinePartsTests
 {
@@ -445,6 +447,35 @@ TEST(Resolution, PredictionHoldsForAPhantomAtTwoResolutions)
     const auto made = static_cast<double>(pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra());
     EXPECT_NEAR(predicted / made, 1.0, 0.15) << predicted << " and " << made;
   }
+}
+
+TEST(Resolution, PointsStayATenthOfTheSlicesApartWhereABoneCannotHaveTheNumberAskedFor)
+{
+  const auto                labels = MakeBox();
+  const auto                ct = bone::CTImage::New();
+  bone::BuildParameters     parameters;
+  std::vector<bone::IdType> counts;
+  double                    least = 1.0;
+  ct->CopyInformation(labels);
+  ct->SetRegions(labels->GetLargestPossibleRegion());
+  ct->Allocate();
+  for (itk::ImageRegionIteratorWithIndex<bone::CTImage> it(ct, ct->GetLargestPossibleRegion()); !it.IsAtEnd(); ++it)
+  {
+    it.Set(labels->GetPixel(it.GetIndex()) == 3 ? 900.0F : 40.0F);
+  }
+  parameters.plan.tetrahedra = 4000;
+  bone::BuildPipeline pipeline(2);
+  const auto          resolution = bone::PlanBuild(bone::CropToBone(ct, labels, nullptr, parameters.plan),
+                                          parameters,
+                                          pipeline,
+                                          [&](const bone::Resolution & tried, bone::IdType count) {
+                                            counts.push_back(count);
+                                            least = std::min(least, tried.contourSpacing / tried.sliceStep);
+                                          });
+  EXPECT_GE(least, 0.1 - 1e-9);
+  EXPECT_LE(counts.size(), 8U);
+  EXPECT_GE(resolution.contourSpacing, 0.1 * resolution.sliceStep - 1e-9);
+  EXPECT_LT(pipeline.GetQuality()->GetOutput()->GetNumberOfTetrahedra(), 3000);
 }
 
 TEST(Resolution, ContoursAreOnSlicesOfTheImageWhateverTheStep)

@@ -188,8 +188,27 @@ ShareOfHoles(const std::vector<Section> & sections)
   return whole > 0.0 ? holes / whole : 0.0;
 }
 
-/** More holes than a vertebra's (some 0.25 of its area) are told. */
-constexpr double MostHoles = 0.4;
+/** By what a label map, or else initial contours, may be wrong ones, or the CT. */
+std::vector<std::string>
+FindDoubts(const std::vector<Section> & sections, const OutlineContrast & contrast, bool labelled)
+{
+  constexpr double         mostHoles = 0.4; // a vertebra's take some 0.25
+  std::vector<std::string> doubts;
+  const double             holes = ShareOfHoles(sections);
+  if (labelled && holes > mostHoles)
+  {
+    doubts.push_back("Holes take " + std::to_string(std::lround(100.0 * holes)) +
+                     " % of the area within the outlines: is the label map that of the cortex alone? A bone is to be "
+                     "labelled whole, with its marrow.");
+  }
+  const std::string mismatch = contrast.FindMismatch(labelled ? "label map" : "initial contours");
+  const std::string line = mismatch.empty() ? contrast.FindForeignUnits() : mismatch;
+  if (!line.empty())
+  {
+    doubts.push_back(line);
+  }
+  return doubts;
+}
 } // namespace
 
 void
@@ -245,20 +264,7 @@ ExtractContours(const SliceFrame &             frame,
   }
   const OutlineContrast contrast = MeasureContrast(sections, planes, frame.pixel, execution.Part(0.93, 0.95));
   report.brighterShare = contrast.GetBrighterShare();
-  if (const double share = label != nullptr ? ShareOfHoles(sections) : 0.0; share > MostHoles)
-  {
-    report.doubts.push_back("Holes take " + std::to_string(std::lround(100.0 * share)) +
-                            " % of the area within the outlines: is the label map that of the cortex alone? A bone is "
-                            "to be labelled whole, with its marrow.");
-  }
-  for (const std::string & line :
-       { contrast.FindMismatch(label != nullptr ? "label map" : "initial contours"), contrast.FindForeignUnits() })
-  {
-    if (!line.empty())
-    {
-      report.doubts.push_back(line);
-    }
-  }
+  report.doubts = FindDoubts(sections, contrast, label != nullptr);
   report.warnings.insert(report.warnings.end(), report.doubts.begin(), report.doubts.end());
   contours.SetFrame(frame.u, frame.v);
   contours.SetSlices(ToSlices(sections, contours));

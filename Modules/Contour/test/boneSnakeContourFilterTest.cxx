@@ -415,6 +415,21 @@ TEST(SnakeContourFilter, DoubtsValuesThatAreNotHU)
   EXPECT_THAT(filter->GetReport().doubts, testing::ElementsAre(HasSubstr("not a display window's?")));
 }
 
+TEST(SnakeContourFilter, DoubtsALabelOfTheCortexAlone)
+{
+  const TestGrid grid;
+  const auto     holes = [&](double radius) {
+    auto filter = FromLabel(grid);
+    filter->SetLabelImage(MakeImage<TestLabels>(grid, [radius](double x, double y, double z) {
+      return std::hypot(x - 0.05 * z, y + 0.02 * z) > radius ? BowedLabel(x, y, z) : 0;
+    }));
+    filter->Update();
+    return filter->GetReport().doubts;
+  };
+  EXPECT_THAT(holes(6.5), testing::Contains(HasSubstr("Holes take 5")));
+  EXPECT_THAT(holes(4.0), testing::Not(testing::Contains(HasSubstr("Holes"))));
+}
+
 template <typename TPixel>
 class SnakeContourFilterTypes : public testing::Test
 {
