@@ -13,7 +13,7 @@ namespace bone
  * \brief What a CT has on both sides of a bone's outline: by it a CT and an outline that do not belong together are
  * found, and values that are not in HU.
  *
- * Along the outline of a bone the CT is brighter within than a few millimetres outside, in 0.73 (a hip's head with a
+ * Along the outline of a bone the CT is brighter within than a few millimetres outside, in 0.73 (a femur's head with a
  * nail, voxels of 3 mm) to 0.98 of its places; along an outline that is mirrored, or shifted across the bone by 5 mm or
  * more, in about half. A shift along a shaft, or of a bone that is its own mirror image, is not seen. */
 class OutlineContrast
