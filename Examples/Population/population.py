@@ -11,7 +11,8 @@ ends with 0 once nothing more is to be tried: the model is there, or the data (e
 `--attempts` were made. Otherwise (no space, no memory, a kill, no program) it ends with the build's exit code: try again.
 `standard` makes FOLDER/standard.vtu, a copy of the table's first model, where there is none; `register`, once all builds are
 through, does so too, and then runs `BONETK register subject` likewise, which writes FOLDER/registrations/NAME.csv.
-`collect` writes FOLDER/failures.csv, and FOLDER/subjects.txt for `bonetk train`.
+`collect` writes FOLDER/failures.csv, FOLDER/doubts.csv of what `build` doubted of the others, and FOLDER/subjects.txt for
+`bonetk train`.
 """
 import argparse
 import csv
@@ -168,9 +169,18 @@ def register(subjects, row, options):
     return run(row, options, ["register", "subject", standard(subjects, options), model(options, row["subject"]), "--ct", row["ct"]])
 
 
+def doubts(results, name):
+    """Why a subject's inputs or model may not be what was meant, as its build says."""
+    try:
+        with open(os.path.join(paths(results, name)[-1], "report.json"), encoding="utf-8") as file:
+            return json.load(file).get("doubts", [])
+    except OSError:
+        return []
+
+
 def collect(subjects, options):
-    """The table of failures, and the list for the atlas."""
-    failures, used, models = [], [], hashlib.sha256()
+    """The tables of failures and of doubts, and the list for the atlas."""
+    failures, doubted, used, models = [], [], [], hashlib.sha256()
     for name in subjects:
         found = result(options.results, name, "register")
         if found[1] != "0":
@@ -180,10 +190,12 @@ def collect(subjects, options):
         with open(mesh, "rb") as file:
             models.update(file.read())
         used.append(os.path.relpath(mesh, options.results))
+        doubted += [[name, doubt] for doubt in doubts(options.results, name)]
+    write_rows(os.path.join(options.results, "doubts.csv"), [["subject", "doubt"], *doubted])
     write_rows(os.path.join(options.results, "failures.csv"), [["subject", "exit", "reason"], *failures])
     # With the checksum the list changes when a model does, so that the atlas is made anew.
     write(os.path.join(options.results, "subjects.txt"), "\n".join([f"# models {models.hexdigest()}", *used, ""]))
-    print(f"{len(used)} models, {len(failures)} failures")
+    print(f"{len(used)} models, {len({name for name, _ in doubted})} of them in doubt, {len(failures)} failures")
     first = first_built(subjects, options)
     if first and not filecmp.cmp(standard(subjects, options), model(options, first), shallow=False):
         print(f"the atlas has the topology of {options.results}/standard.vtu, which is not the present model of {first}: to take"

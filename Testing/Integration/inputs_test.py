@@ -230,7 +230,7 @@ class Labels(TestCase):
             self.assertEqual(report["shareOfTheOutlineBrighterInside"] > 0.65, labels == "labels")
             _, of_contours = self.succeed("contours", f"{ct}.nii.gz", "--labels", f"{labels}.nii.gz", "--label", "25",
                                           "--quiet", "-o", "c.vtp")
-            for text in (told, of_contours, " ".join(report["warnings"])):
+            for text in (told, of_contours, " ".join(report["warnings"]), " ".join(report["doubts"])):
                 if doubt:
                     self.assertIn(doubt, text)
                 else:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Examples/Population: many subjects by the Slurm scripts, here without Slurm, and by Snakemake where that is installed."""
 import csv
+import json
 import os
 import shutil
 import unittest
@@ -110,6 +111,17 @@ class Population(TestCase):
         self.assertEqual(self.calls(), ([], [], 0))
         self.assertNotIn("standard.vtu", self.train())
         self.check("array", ["s0", "s1", "s2"])
+
+        # What a build doubts is in a table.
+        report = read_json("array/models/s1/report.json")
+        for doubts in ([], ["a doubt, with a comma", "another"]):
+            with open("array/models/s1/report.json", "w") as file:
+                json.dump({**report, "doubts": doubts}, file)
+            self.train()
+            with open("array/doubts.csv", newline="") as file:
+                rows = list(csv.reader(file))
+            self.assertEqual(rows[0], ["subject", "doubt"])
+            self.assertEqual([row[1] for row in rows if row[0] == "s1"], doubts)
 
         # A subject that is built anew is registered anew, to the same standard.
         self.calls()

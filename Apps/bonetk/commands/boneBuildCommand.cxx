@@ -342,9 +342,11 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.brighterShare = pipeline.GetSnake()->GetReport().brighterShare;
   report.tiling = pipeline.GetTiling()->GetReport();
   report.levels = evaluation.levels;
+  report.doubts = pipeline.GetSnake()->GetReport().doubts;
   for (const std::string & doubt : FindDoubts(plan, report.levels))
   {
     session.WarnAlways(doubt);
+    report.doubts.push_back(doubt);
   }
   report.warnings = session.GetWarnings();
   {

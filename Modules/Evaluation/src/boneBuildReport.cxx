@@ -318,6 +318,7 @@ ToJson(const BuildReport & report)
     json["levels"].push_back(ToJson(level));
   }
   json["warnings"] = report.warnings;
+  json["doubts"] = report.doubts;
   for (const auto & [name, seconds] : report.times)
   {
     json["seconds"][name] = seconds;
