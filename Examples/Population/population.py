@@ -170,7 +170,7 @@ def register(subjects, row, options):
 
 
 def doubts(results, name):
-    """Why a subject's inputs or model may not be what was meant, as its build says."""
+    """Why a subject's CT or label map may be a wrong one, as its build says."""
     try:
         with open(os.path.join(paths(results, name)[-1], "report.json"), encoding="utf-8") as file:
             return json.load(file).get("doubts", [])

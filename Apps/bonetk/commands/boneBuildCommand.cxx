@@ -346,7 +346,6 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   for (const std::string & doubt : FindDoubts(plan, report.levels))
   {
     session.WarnAlways(doubt);
-    report.doubts.push_back(doubt);
   }
   report.warnings = session.GetWarnings();
   {

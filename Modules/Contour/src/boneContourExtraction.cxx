@@ -190,7 +190,7 @@ ShareOfHoles(const std::vector<Section> & sections)
 
 /** By what a label map, or else initial contours, may be wrong ones, or the CT. */
 std::vector<std::string>
-FindDoubts(const std::vector<Section> & sections, const OutlineContrast & contrast, bool labelled)
+DoubtInput(const std::vector<Section> & sections, const OutlineContrast & contrast, bool labelled)
 {
   constexpr double         mostHoles = 0.4; // a vertebra's take some 0.25
   std::vector<std::string> doubts;
@@ -264,7 +264,7 @@ ExtractContours(const SliceFrame &             frame,
   }
   const OutlineContrast contrast = MeasureContrast(sections, planes, frame.pixel, execution.Part(0.93, 0.95));
   report.brighterShare = contrast.GetBrighterShare();
-  report.doubts = FindDoubts(sections, contrast, label != nullptr);
+  report.doubts = DoubtInput(sections, contrast, label != nullptr);
   report.warnings.insert(report.warnings.end(), report.doubts.begin(), report.doubts.end());
   contours.SetFrame(frame.u, frame.v);
   contours.SetSlices(ToSlices(sections, contours));

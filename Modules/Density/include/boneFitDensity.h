@@ -23,7 +23,7 @@ struct DensityFitImage
 {
   VoxelGrid    grid;
   ImageSampler interpolated;
-  ImageSampler voxels;  ///< at voxel centres only
+  ImageSampler voxels;  ///< the fit asks at voxel centres only
   ImageSampler weights; ///< empty: all alike
 };
 

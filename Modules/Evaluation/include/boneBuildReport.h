@@ -66,7 +66,7 @@ struct BuildReport
   TilingReport             tiling;
   std::vector<LevelReport> levels;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts; ///< those of the warnings by which the input or the result may not be what was meant
+  std::vector<std::string> doubts; ///< those of the warnings by which the input may be a wrong one
   /** The files beside the report, with their bytes. */
   std::vector<std::pair<std::string, std::uintmax_t>> outputs;
   /** Seconds by step, in order. */
