@@ -33,13 +33,8 @@ main(int argc, char ** argv)
 
     // Patients lie along z (head up in the picture); the beam runs from front to back, along +y.
     auto geometry = bone::XRayGeometry::New();
-    geometry->SetView(bone::XRayGeometry::Framing(lower,
-                                                  upper,
-                                                  bone::Vector3::UnitY(),
-                                                  bone::Vector3::UnitZ(),
-                                                  /* to centre */ 900.0,
-                                                  /* to detector */ 1100.0,
-                                                  512));
+    geometry->SetView(
+      bone::XRayGeometry::Framing(lower, upper, bone::Vector3::UnitY(), bone::Vector3::UnitZ(), /* pixels */ 512));
 
     auto radiograph = bone::DRRImageFilter<bone::DensityMesh<double>, bone::CTImage>::New();
     radiograph->SetInput(model);

@@ -99,6 +99,31 @@ TEST(BoneImage, CroppedImageStaysInPlace)
   EXPECT_EQ(cropped->GetPixel(first), 3);
 }
 
+TEST(BuildViews, HoldABoneThatIsLongAlongTheBeam)
+{
+  for (const bone::Vector3 & size :
+       { bone::Vector3(600, 30, 30), bone::Vector3(30, 600, 30), bone::Vector3(30, 30, 600) })
+  {
+    bone::MeshArrays box = MakeBoxMesh(0.0);
+    for (bone::Vector3 & point : box.points)
+    {
+      point = (point - box.points.front()).cwiseProduct(size) / 3.0;
+    }
+    auto mesh = bone::BuildPipeline::MeshType::New();
+    mesh->SetArrays(std::move(box));
+    for (const auto & geometry : { bone::FrontView(mesh), bone::LateralView(mesh) })
+    {
+      for (const bone::Vector3 & point : mesh->GetArrays().points)
+      {
+        const bone::Vector2 pixel = geometry->ProjectPoint(point);
+        EXPECT_GT(pixel.minCoeff(), -0.5);
+        EXPECT_LT(pixel.x(), geometry->GetView().size[0] - 0.5);
+        EXPECT_LT(pixel.y(), geometry->GetView().size[1] - 0.5);
+      }
+    }
+  }
+}
+
 bone::CTImage::Pointer
 MakeCTOfBox()
 {

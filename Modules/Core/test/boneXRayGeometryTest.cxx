@@ -137,6 +137,29 @@ TEST(XRayGeometry, FramingRefusesABoxThatReachesTheSourceOrTheDetector)
   EXPECT_THROW(XRayGeometry::Framing(upper, lower, beam, up, 500, 1000, 64), itk::ExceptionObject);
 }
 
+TEST(XRayGeometry, FramingFindsDistancesForABoxOfAnyDepth)
+{
+  const Vector3 up = Vector3::UnitZ();
+  for (const double depth : { 1.0, 399.0, 401.0, 700.0, 5000.0 })
+  {
+    for (const Vector3 & beam : { Vector3(0, 1, 0), Vector3(-1, 0, 0), Vector3(1, 2, 0.5), Vector3(-1, 1, -1) })
+    {
+      const Vector3 lower(-0.5 * depth, -0.5 * depth, 10), upper(0.5 * depth, 0.5 * depth, 90);
+      const auto    view = XRayGeometry::Framing(lower, upper, beam, up, 64); // a box outside is an error
+      const double  toCentre = (0.5 * (lower + upper) - view.source).norm();
+      const double  reach = 0.5 * (upper - lower).dot(beam.normalized().cwiseAbs());
+      EXPECT_GE(toCentre, 3.99 * reach);
+      EXPECT_EQ(std::max(view.size[0], view.size[1]), 64);
+      if (reach < 190)
+      {
+        const Vector3 normal = view.detectorU.cross(view.detectorV);
+        EXPECT_NEAR(toCentre, 1000, 1e-9);
+        EXPECT_NEAR((view.detectorOrigin - view.source).dot(normal), 1200, 1e-9);
+      }
+    }
+  }
+}
+
 TEST(XRayGeometry, GraftCopiesTheView)
 {
   const auto from = XRayGeometry::New(), to = XRayGeometry::New();

@@ -213,8 +213,7 @@ MakeAtlasPage(const StatisticalModel & model, const AtlasReport & report, const 
     upper = upper.cwiseMax(x);
   }
   const Vector3 margin = 0.1 * (upper - lower); // for the modes
-  page.AddAtlas(
-    PackAtlas(model, modes, XRayGeometry::Framing(lower - margin, upper + margin, beam, up, 900.0, 1100.0, pixels)));
+  page.AddAtlas(PackAtlas(model, modes, XRayGeometry::Framing(lower - margin, upper + margin, beam, up, pixels)));
   const bool hasShape = content.shape.GetNumberOfModes() > 0, hasDensity = content.density.GetNumberOfModes() > 0;
   page.BeginSection("modes", "Modes");
   if (!hasShape && !hasDensity)

@@ -227,7 +227,7 @@ DrawRadiographModes(const StatisticalModel & model, const Vector3 & direction, c
     }
   }
   auto geometry = XRayGeometry::New();
-  geometry->SetView(XRayGeometry::Framing(lower, upper, direction, up, 900.0, 1100.0, Side));
+  geometry->SetView(XRayGeometry::Framing(lower, upper, direction, up, Side));
   const Panel  mean = Radiograph(kinds[0].second[1], geometry);
   const double brightest = *std::max_element(mean.values.begin(), mean.values.end());
   const double white = RoundInRange(brightest, brightest);

@@ -183,8 +183,8 @@ FramedView(const BuildPipeline::MeshType * mesh, const Vector3 & beam)
     upper = upper.cwiseMax(p);
   }
   auto geometry = XRayGeometry::New();
-  geometry->SetView(XRayGeometry::Framing(
-    lower - Vector3::Constant(5.0), upper + Vector3::Constant(5.0), beam, Vector3::UnitZ(), 1000.0, 1200.0, 400));
+  geometry->SetView(
+    XRayGeometry::Framing(lower - Vector3::Constant(5.0), upper + Vector3::Constant(5.0), beam, Vector3::UnitZ(), 400));
   return geometry;
 }
 } // namespace

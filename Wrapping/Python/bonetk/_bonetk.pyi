@@ -220,7 +220,7 @@ class XRayGeometry(DataObject):
     @staticmethod
     def framing(
         lower: npt.ArrayLike, upper: npt.ArrayLike, beam: npt.ArrayLike = ..., up: npt.ArrayLike = ...,
-        source_to_centre: float = 1000.0, source_to_detector: float = 1200.0, pixels: int = 512,
+        source_to_centre: Optional[float] = None, source_to_detector: Optional[float] = None, pixels: int = 512,
     ) -> XRayGeometry: ...
     @staticmethod
     def carm(

@@ -8,6 +8,8 @@
 #include "boneGeometryIO.h"
 #include "boneXRayConventions.h"
 
+#include <optional>
+
 namespace bone::python
 {
 namespace
@@ -54,21 +56,22 @@ BuildGeometry(const py::object &         source,
 }
 
 XRayGeometry::Pointer
-FrameBox(const py::object & lower,
-         const py::object & upper,
-         const py::object & beam,
-         const py::object & up,
-         double             sourceToCentre,
-         double             sourceToDetector,
-         int                pixels)
+FrameBox(const py::object &    lower,
+         const py::object &    upper,
+         const py::object &    beam,
+         const py::object &    up,
+         std::optional<double> sourceToCentre,
+         std::optional<double> sourceToDetector,
+         int                   pixels)
 {
-  return MakeGeometry(XRayGeometry::Framing(ToVector(lower, "lower"),
-                                            ToVector(upper, "upper"),
-                                            ToVector(beam, "beam").normalized(),
-                                            ToVector(up, "up").normalized(),
-                                            sourceToCentre,
-                                            sourceToDetector,
-                                            pixels));
+  const Vector3 low = ToVector(lower, "lower"), high = ToVector(upper, "upper");
+  const Vector3 along = ToVector(beam, "beam").normalized(), upwards = ToVector(up, "up").normalized();
+  if (!sourceToCentre && !sourceToDetector)
+  {
+    return MakeGeometry(XRayGeometry::Framing(low, high, along, upwards, pixels));
+  }
+  return MakeGeometry(XRayGeometry::Framing(
+    low, high, along, upwards, sourceToCentre.value_or(1000.0), sourceToDetector.value_or(1200.0), pixels));
 }
 
 XRayGeometry::Pointer
@@ -225,11 +228,13 @@ BindGeometry(py::module_ & m)
       py::arg("upper"),
       py::arg("beam") = py::make_tuple(0, 1, 0),
       py::arg("up") = py::make_tuple(0, 0, 1),
-      py::arg("source_to_centre") = 1000.0,
-      py::arg("source_to_detector") = 1200.0,
+      py::arg("source_to_centre") = py::none(),
+      py::arg("source_to_detector") = py::none(),
       py::arg("pixels") = 512,
       "A view that just holds the box of two corners (mm), along `beam` (0, 1, 0: from the front); the longer "
-      "side is `pixels` long.")
+      "side is `pixels` long. Distances (mm) are 1000 and 1200 where they are not given; where neither is and the box "
+      "is "
+      "deeper than they have room for, more.")
     .def_static("carm",
                 &BuildCArm,
                 py::arg("primary"),

@@ -75,6 +75,15 @@ class Radiographs(unittest.TestCase):
         image = bonetk.Projector(moved)(self.view)
         np.testing.assert_allclose(projector(self.view, pose), image, atol=1e-4 * image.max())
 
+    def test_a_view_holds_a_box_of_any_depth(self):
+        lower, upper = (-300, 0, 0), (300, 50, 50)
+        view = bonetk.XRayGeometry.framing(lower, upper, beam=(1, 0, 0), pixels=64)
+        self.assertLessEqual(np.max(view.project([lower, upper])), 64)
+        usual = bonetk.XRayGeometry.framing(lower, upper)
+        self.assertEqual(usual.to_dict(), bonetk.XRayGeometry.framing(lower, upper, source_to_centre=1000).to_dict())
+        with self.assertRaisesRegex(bonetk.DataError, "1300.* between the source and the detector at 1200 mm"):
+            bonetk.XRayGeometry.framing(lower, upper, beam=(1, 0, 0), source_to_detector=1200)
+
     def test_many_poses_at_once_are_those_of_each(self):
         poses = np.random.default_rng(1).uniform(-0.2, 0.2, (40, 6))
         projector = bonetk.Projector(self.mesh)

@@ -70,6 +70,11 @@ public:
           double          sourceToDetector,
           int             pixels);
 
+  /** The same where the distances do not matter: 1000 and 1200 mm, and for boxes of more than 400 mm along the beam so
+   * much more that they lie before the detector and twice as far from the source as they are deep. */
+  static View
+  Framing(const Vector3 & lower, const Vector3 & upper, const Vector3 & beam, const Vector3 & up, int pixels);
+
   void
   Graft(const itk::DataObject * data) override;
 

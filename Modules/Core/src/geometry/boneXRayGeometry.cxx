@@ -166,6 +166,19 @@ XRayGeometry::Framing(const Vector3 & lower,
   return view;
 }
 
+XRayGeometry::View
+XRayGeometry::Framing(const Vector3 & lower,
+                      const Vector3 & upper,
+                      const Vector3 & beam,
+                      const Vector3 & up,
+                      int             pixels)
+{
+  const double halfDepth = 0.5 * (upper - lower).dot(beam.normalized().cwiseAbs());
+  const double toCentre = std::max(1000.0, 4 * halfDepth);
+  const double toDetector = toCentre + std::max(200.0, 1.01 * halfDepth); // some more than needed, for rounding
+  return Framing(lower, upper, beam, up, toCentre, toDetector, pixels);
+}
+
 void
 XRayGeometry::Graft(const itk::DataObject * data)
 {
