@@ -29,7 +29,8 @@ namespace bone
  * cells move, those of surfaces along the first level's, edges of surfaces are flipped, and points are moved along
  * normals so that regions keep their volumes, until no angle is below WantedDihedralAngle (in the cortical layer
  * WantedCorticalDihedralAngle) or the bound on volumes is reached. That is for finite elements, whose stiffness
- * matrices small angles spoil (J. R. Shewchuk, "What is a good linear finite element?", 2002).
+ * matrices small angles spoil (J. R. Shewchuk, "What is a good linear finite element?", 2002); long cells, which are too
+ * stiff in bending, are avoided for the same reason.
  *
  * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
  * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",

@@ -18,6 +18,19 @@ constexpr double GoodAngle = 25.0 / 57.29577951308232;
 constexpr double ShapeWeight = 0.01;
 constexpr double LengthWeight = 1e-3;
 constexpr double DeficitWeight = 0.3;
+constexpr double SlendernessWeight = 0.3;
+constexpr double GoodLength = 2.75; // of a cell's longest edge, in edges of an equilateral tetrahedron
+
+double
+LongestEdge(const std::vector<Vector3> & points, const Id4 & cell)
+{
+  double squared = 0.0;
+  for (const auto & edge : TetraEdges)
+  {
+    squared = std::max(squared, (points[cell[edge[0]]] - points[cell[edge[1]]]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
 
 bool
 IsTested(const TetraComplex & complex, int surface)
@@ -60,6 +73,17 @@ MeshCollapser::UpdateGrid(IdType v, bool insert)
   }
 }
 
+double
+MeshCollapser::EquilateralEdge() const
+{
+  double volume = 0.0;
+  for (const Region & region : m_Regions)
+  {
+    volume += region.volume;
+  }
+  return std::cbrt(6.0 * std::sqrt(2.0) * volume / m_Complex.AliveCells());
+}
+
 MeshOperation
 MeshCollapser::CheckVolume(IdType v, const std::vector<double> & volumes, double & cost) const
 {
@@ -90,7 +114,7 @@ MeshCollapser::Rate(IdType                v,
                     double &              cost) const
 {
   const auto & p = m_Complex.Points();
-  double       worst = -1.0, volume = 0.0, deficit = 0.0;
+  double       worst = -1.0, volume = 0.0, deficit = 0.0, longest = 0.0;
   volumes.assign(m_Regions.size(), 0.0);
   for (IdType t : m_Complex.Star(v))
   {
@@ -113,6 +137,7 @@ MeshCollapser::Rate(IdType                v,
     if (m_Improvement)
     {
       deficit = std::max(deficit, 1.0 - std::acos(cosine) / WantedAngles().Of(m_Complex.Region(t)));
+      longest = std::max(longest, LongestEdge(p, c));
     }
     if (cosine > (m_Complex.Region(t) == Cortical ? limits.cortical : limits.other))
     {
@@ -134,6 +159,11 @@ MeshCollapser::Rate(IdType                v,
   const double length = (p[v] - p[w]).norm();
   cost = densityCost + m_Parameters.surfaceWeight * surface.integral + ShapeWeight * volume * shape * shape +
          LengthWeight * length * length * length + DeficitWeight * volume * deficit * deficit;
+  if (m_Improvement)
+  {
+    const double slenderness = std::max(0.0, longest / (GoodLength * EquilateralEdge()) - 1.0);
+    cost += SlendernessWeight * volume * slenderness * slenderness;
+  }
   return CheckVolume(v, volumes, cost);
 }
 

@@ -134,6 +134,39 @@ TEST(AngleImprovement, LevelsHaveTheWantedAnglesAndStayValid)
   EXPECT_LT(10 * after, before) << before;
 }
 
+/** The longest edge, in edges of equilateral tetrahedra that fill the mesh in its number. */
+double
+LongestEdge(const MeshArrays & mesh)
+{
+  double volume = 0.0, longest = 0.0;
+  for (const Id4 & c : mesh.tetrahedra)
+  {
+    volume += SignedVolume(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]], mesh.points[c[3]]);
+    for (const auto & edge : TetraEdges)
+    {
+      longest = std::max(longest, (mesh.points[c[edge[0]]] - mesh.points[c[edge[1]]]).norm());
+    }
+  }
+  return longest / std::cbrt(6.0 * std::sqrt(2.0) * volume / static_cast<double>(mesh.tetrahedra.size()));
+}
+
+TEST(AngleImprovement, LongCellsAreAvoidedWhereNothingElseHoldsThemBack)
+{
+  test::TubeShape shape; // a straight shaft of one density
+  shape.slices = 60;
+  shape.around = 16;
+  shape.rings = { 1, 1, 1 };
+  MeshArrays mesh = test::MakeTube(shape);
+  test::SetDensity(mesh, 0, [](const Vector3 &) { return 700.0; });
+  const auto plain = Simplified(mesh, false), improved = Simplified(mesh, true);
+  for (int i = 1; i <= 2; ++i)
+  {
+    const double before = LongestEdge(plain->GetOutput()->GetMesh(i)->GetArrays());
+    const double after = LongestEdge(improved->GetOutput()->GetMesh(i)->GetArrays());
+    EXPECT_GT(before, 1.35 * after) << after << " at level " << i + 1;
+  }
+}
+
 TEST(AngleImprovement, PointsThatWereDrawnTogetherMoveApartAlongTheFinestSurface)
 {
   const MeshArrays                       mesh = Body(1);
