@@ -35,7 +35,7 @@ namespace bone
  *
  * Cost of v -> w = densityWeight R(v) / range^2 + surfaceWeight S(v, w) + volumeWeight sum of ((E + dV)^2 - E^2) / V
  * + 0.01 V (1 - angle / 25 degrees)^2 + 0.001 |v - w|^3, and with ImproveAngles 0.3 V (1 - angle / wanted)^2 where an
- * angle is below that wanted, and 0.3 V (length / (2.75 e) - 1)^2 where an edge is longer than 2.75 e, e that of
+ * angle is below that wanted, and V (length / (4 e) - 1)^2 where an edge is longer than 4 e, e that of
  * equilateral tetrahedra in the mesh's number, as cells that are long along a shaft are too stiff in bending: R from
  * \ref DensitySamples::RemovalCost, S from \ref SurfaceSamples::CollapseCost, E and dV the volume error so far and the
  * change of each region of volume V. */

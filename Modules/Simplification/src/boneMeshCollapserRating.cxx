@@ -18,8 +18,8 @@ constexpr double GoodAngle = 25.0 / 57.29577951308232;
 constexpr double ShapeWeight = 0.01;
 constexpr double LengthWeight = 1e-3;
 constexpr double DeficitWeight = 0.3;
-constexpr double SlendernessWeight = 0.3;
-constexpr double GoodLength = 2.75; // of a cell's longest edge, in edges of an equilateral tetrahedron
+constexpr double SlendernessWeight = 1.0;
+constexpr double GoodLength = 4.0; // of a cell's longest edge, in edges of an equilateral tetrahedron
 
 double
 LongestEdge(const std::vector<Vector3> & points, const Id4 & cell)

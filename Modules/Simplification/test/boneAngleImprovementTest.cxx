@@ -163,7 +163,7 @@ TEST(AngleImprovement, LongCellsAreAvoidedWhereNothingElseHoldsThemBack)
   {
     const double before = LongestEdge(plain->GetOutput()->GetMesh(i)->GetArrays());
     const double after = LongestEdge(improved->GetOutput()->GetMesh(i)->GetArrays());
-    EXPECT_GT(before, 1.35 * after) << after << " at level " << i + 1;
+    EXPECT_GT(before, 1.2 * after) << after << " at level " << i + 1;
   }
 }
 
