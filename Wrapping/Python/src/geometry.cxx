@@ -232,9 +232,8 @@ BindGeometry(py::module_ & m)
       py::arg("source_to_detector") = py::none(),
       py::arg("pixels") = 512,
       "A view that just holds the box of two corners (mm), along `beam` (0, 1, 0: from the front); the longer "
-      "side is `pixels` long. Distances (mm) are 1000 and 1200 where they are not given; where neither is and the box "
-      "is "
-      "deeper than they have room for, more.")
+      "side is `pixels` long. Distances (mm) are 1000 and 1200 where they are not given, or more where neither is and "
+      "the box is too deep for them.")
     .def_static("carm",
                 &BuildCArm,
                 py::arg("primary"),
