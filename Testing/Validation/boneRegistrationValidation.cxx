@@ -143,6 +143,7 @@ Describe(const RigidRegistrationResult & result, const std::vector<Vector3> & po
                       { "plane", plane },
                       { "cost", result.cost },
                       { "distinctness", result.distinctness },
+                      { "leastDistinctness", result.leastDistinctness },
                       { "quality", static_cast<int>(result.quality) },
                       { "searches", result.searches } };
   const Vector3  deviations = result.covariance.diagonal().head<3>().cwiseSqrt();

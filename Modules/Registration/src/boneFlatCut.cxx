@@ -17,14 +17,14 @@ namespace
 struct ExteriorFace
 {
   std::array<Vector3, 3> corners;
-  Vector3                area; ///< outward, mm^2
+  Vector3                normal; ///< outward, of length 1 (0 where the face has no area)
+  double                 area;   ///< mm^2
 
   bool
   LiesOn(const FlatCut & cut) const
   {
     constexpr double flat = 0.05; // mm
-    return area.dot(cut.inward) < -0.999 * area.norm() &&
-           std::all_of(corners.begin(), corners.end(), [&cut](const Vector3 & x) {
+    return normal.dot(cut.inward) < -0.999 && std::all_of(corners.begin(), corners.end(), [&cut](const Vector3 & x) {
              return std::abs(cut.inward.dot(x) - cut.offset) < flat;
            });
   }
@@ -40,7 +40,9 @@ ExteriorFaces(const MeshArrays & mesh)
     std::transform(face.begin(), face.end(), exterior.corners.begin(), [&mesh](IdType p) {
       return mesh.points[static_cast<std::size_t>(p)];
     });
-    exterior.area = 0.5 * (exterior.corners[1] - exterior.corners[0]).cross(exterior.corners[2] - exterior.corners[0]);
+    exterior.normal = (exterior.corners[1] - exterior.corners[0]).cross(exterior.corners[2] - exterior.corners[0]);
+    exterior.area = 0.5 * exterior.normal.norm();
+    exterior.normal.normalize();
     faces.push_back(exterior);
   }
   return faces;
@@ -54,17 +56,16 @@ LikelyPlanes(const std::vector<ExteriorFace> & faces)
   std::map<std::array<long, 4>, std::pair<FlatCut, double>> groups;
   for (const ExteriorFace & face : faces)
   {
-    const double size = face.area.norm();
-    if (size > 0.0)
+    if (face.area > 0.0)
     {
-      const Vector3 inward = -face.area / size;
+      const Vector3 inward = -face.normal;
       const double  offset = inward.dot(face.corners[0]);
       auto &        group = groups[{ { std::lround(20.0 * inward.x()),
                                        std::lround(20.0 * inward.y()),
                                        std::lround(20.0 * inward.z()),
                                        std::lround(offset) } }];
       group.first = { inward, offset };
-      group.second += size;
+      group.second += face.area;
     }
   }
   std::vector<FlatCut> planes;
@@ -78,43 +79,59 @@ LikelyPlanes(const std::vector<ExteriorFace> & faces)
   return planes;
 }
 
-/** Mean section of the mesh, mm^2, parallel to the cut in the slab beneath it. */
-double
-SectionBeneath(const MeshArrays & mesh, const FlatCut & cut)
+/** Centroids and volumes of a mesh's cells. */
+class CellWeights
 {
-  constexpr double slab = 10.0; // mm
-  double           volume = 0.0;
-  for (const Id4 & t : mesh.tetrahedra)
+public:
+  explicit CellWeights(const MeshArrays & mesh)
   {
-    std::array<Vector3, 4> x;
-    std::transform(
-      t.begin(), t.end(), x.begin(), [&mesh](IdType p) { return mesh.points[static_cast<std::size_t>(p)]; });
-    const double depth = cut.inward.dot(x[0] + x[1] + x[2] + x[3]) / 4.0 - cut.offset;
-    if (depth > 0.0 && depth < slab)
+    for (const Id4 & t : mesh.tetrahedra)
     {
-      volume += std::abs(SignedVolume(x[0], x[1], x[2], x[3]));
+      std::array<Vector3, 4> x;
+      std::transform(
+        t.begin(), t.end(), x.begin(), [&mesh](IdType p) { return mesh.points[static_cast<std::size_t>(p)]; });
+      m_Centroids.emplace_back((x[0] + x[1] + x[2] + x[3]) / 4.0);
+      m_Volumes.push_back(std::abs(SignedVolume(x[0], x[1], x[2], x[3])));
     }
   }
-  return volume / slab;
-}
+
+  /** Mean section, mm^2, parallel to the cut in the slab beneath it. */
+  double
+  SectionBeneath(const FlatCut & cut) const
+  {
+    constexpr double slab = 10.0; // mm
+    double           volume = 0.0;
+    for (std::size_t t = 0; t < m_Volumes.size(); ++t)
+    {
+      const double depth = cut.inward.dot(m_Centroids[t]) - cut.offset;
+      volume += depth > 0.0 && depth < slab ? m_Volumes[t] : 0.0;
+    }
+    return volume / slab;
+  }
+
+private:
+  std::vector<Vector3> m_Centroids;
+  std::vector<double>  m_Volumes;
+};
 } // namespace
 
 std::vector<FlatCut>
 FindFlatCuts(const MeshArrays & mesh)
 {
   const std::vector<ExteriorFace> faces = ExteriorFaces(mesh);
+  const CellWeights               cells(mesh);
   std::vector<FlatCut>            cuts;
   for (const FlatCut & plane : LikelyPlanes(faces))
   {
     double area = 0.0;
     for (const ExteriorFace & face : faces)
     {
-      area += face.LiesOn(plane) ? face.area.norm() : 0.0;
+      area += face.LiesOn(plane) ? face.area : 0.0;
     }
     const bool isKnown = std::any_of(cuts.begin(), cuts.end(), [&plane](const FlatCut & cut) {
       return cut.inward.dot(plane.inward) > 0.999 && std::abs(cut.offset - plane.offset) < 1.0;
     });
-    if (!isKnown && area > 0.5 * SectionBeneath(mesh, plane))
+    if (!isKnown && area > 0.5 * cells.SectionBeneath(plane))
     {
       cuts.push_back(plane);
     }

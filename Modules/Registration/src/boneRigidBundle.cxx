@@ -82,14 +82,36 @@ public:
     }
   }
 
-  /** Levenberg-Marquardt steps; whether they ended before they ran out. */
+  MetricSum
+  Evaluate(const BundleState & state, const Execution & execution) const
+  {
+    MetricSum sum(m_Prior.size());
+    for (std::size_t v = 0; v < m_Views.size(); ++v)
+    {
+      auto                 images = this->Project(state, v, execution);
+      std::vector<float *> pointers;
+      for (std::vector<float> & image : images)
+      {
+        pointers.push_back(image.data());
+      }
+      MetricValue           value = m_Metrics[v]->EvaluateDerivatives(pointers);
+      const Eigen::MatrixXd map = this->Parameterize(state, v);
+      value.gradient = map.transpose() * value.gradient;
+      value.hessian = map.transpose() * value.hessian * map;
+      value.shares = map.transpose() * value.shares;
+      sum.Add(value, 1.0 / static_cast<double>(m_Views.size()));
+    }
+    return sum;
+  }
+
+  /** Levenberg-Marquardt steps from `at`, where Evaluate gives `value`; whether they ended before they ran out. */
   bool
   Descend(BundleState &                                          at,
+          MetricSum &                                            value,
           const Execution &                                      execution,
           const std::function<void(const RigidPose &, double)> & observe) const
   {
     constexpr double least = 0.02; // of the logarithm of the posterior
-    MetricSum        value = this->Evaluate(at, execution.Silent());
     Damping          damping;
     bool             isDone = false;
     for (int i = 0; i < m_P.iterations && !isDone; ++i)
@@ -118,11 +140,10 @@ public:
     return isDone;
   }
 
-  /** The covariance of all parameters, as RegisterRigid's. */
+  /** The covariance of all parameters, as RegisterRigid's, at the minimum. */
   Eigen::MatrixXd
-  MakeCovariance(const BundleState & at, const Execution & execution) const
+  MakeCovariance(const MetricSum & value) const
   {
-    const MetricSum value = this->Evaluate(at, execution.Silent());
     const auto      size = m_Prior.size();
     const double    precision = value.EstimatePrecision();
     Eigen::MatrixXd hessian = precision * value.hessian;
@@ -232,28 +253,6 @@ private:
     return images;
   }
 
-  MetricSum
-  Evaluate(const BundleState & state, const Execution & execution) const
-  {
-    MetricSum sum(m_Prior.size());
-    for (std::size_t v = 0; v < m_Views.size(); ++v)
-    {
-      auto                 images = this->Project(state, v, execution);
-      std::vector<float *> pointers;
-      for (std::vector<float> & image : images)
-      {
-        pointers.push_back(image.data());
-      }
-      MetricValue           value = m_Metrics[v]->EvaluateDerivatives(pointers);
-      const Eigen::MatrixXd map = this->Parameterize(state, v);
-      value.gradient = map.transpose() * value.gradient;
-      value.hessian = map.transpose() * value.hessian * map;
-      value.shares = map.transpose() * value.shares;
-      sum.Add(value, 1.0 / static_cast<double>(m_Views.size()));
-    }
-    return sum;
-  }
-
   const RigidRadiographParameters &              m_P;
   const std::vector<MeshArrays> &                m_Bodies;
   bool                                           m_AreViewsMoved;
@@ -300,8 +299,9 @@ AdjustRigidBundle(const std::vector<MeshArrays> &                        models,
     state.motions.push_back(view.motion);
   }
   const RigidBundle           bundle(bodies, views, parameters);
-  const bool                  converged = bundle.Descend(state, execution, observe);
-  const Eigen::MatrixXd       covariance = bundle.MakeCovariance(state, execution);
+  MetricSum                   value = bundle.Evaluate(state, execution.Silent());
+  const bool                  converged = bundle.Descend(state, value, execution, observe);
+  const Eigen::MatrixXd       covariance = bundle.MakeCovariance(value);
   std::vector<RadiographView> moved = views;
   for (std::size_t v = 0; v < views.size(); ++v)
   {

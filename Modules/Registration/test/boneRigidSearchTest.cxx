@@ -1,0 +1,81 @@
+/*=========================================================================
+ *  Copyright the BoneTK contributors. SPDX-License-Identifier: Apache-2.0
+ *=========================================================================*/
+#include "boneRigidSearch.h"
+
+#include "boneRegistrationTestBody.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace RigidSearchTests
+{
+using namespace bone;
+using namespace bone::test;
+
+const RigidPose Start = PoseOf(0, 0, 0, 0, 0, 0);
+
+RigidRadiographParameters
+Parameters(int searches)
+{
+  RigidRadiographParameters parameters;
+  parameters.searchPixels = 48;
+  parameters.pixels = 96;
+  parameters.population = 20;
+  parameters.searches = searches;
+  return parameters;
+}
+
+RigidRegistrationResult
+Search(const std::vector<RadiographView> & views, const RigidRadiographParameters & parameters)
+{
+  return SearchRigid({ Body(12), Body(8) }, views, Start, parameters, Execution(), {});
+}
+
+TEST(RigidSearch, WhereAllIsHopelessTheBestIsRefinedToTheEnd)
+{
+  std::vector<RadiographView>           views = TwoXRays(Body(8), Start);
+  std::mt19937                          random(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 100.0f);
+  for (RadiographView & view : views)
+  {
+    std::generate(view.values.begin(), view.values.end(), [&] { return uniform(random); });
+  }
+  const auto                result = Search(views, Parameters(2));
+  RigidRegistrationResult   judged = result;
+  RigidRadiographParameters last = Parameters(2);
+  JudgePose(Body(12), views, last, Execution(), judged);
+  EXPECT_EQ(result.searches, 2);
+  EXPECT_EQ(result.quality, RegistrationQuality::Failed);
+  EXPECT_EQ(result.cost, judged.cost);
+  EXPECT_EQ(result.distinctness, judged.distinctness);
+}
+
+TEST(RigidSearch, APoseThatIsNotDistinctIsOkWhenThreeSearchesFoundIt)
+{
+  const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
+  // Noise makes the true pose less distinct.
+  std::vector<RadiographView>     views = TwoXRays(Body(12), truth);
+  std::mt19937                    random(3);
+  std::normal_distribution<float> normal(0.0f,
+                                         0.5f * *std::max_element(views[0].values.begin(), views[0].values.end()));
+  for (RadiographView & view : views)
+  {
+    for (float & x : view.values)
+    {
+      x += normal(random);
+    }
+  }
+  RigidRegistrationResult judged;
+  judged.pose = truth;
+  JudgePose(Body(12), views, Parameters(1), Execution(), judged);
+  ASSERT_EQ(judged.quality, RegistrationQuality::Suspect) << judged.distinctness;
+  const auto once = Search(views, Parameters(2)), often = Search(views, Parameters(12));
+  EXPECT_EQ(once.quality, RegistrationQuality::Suspect);
+  EXPECT_EQ(often.quality, RegistrationQuality::Ok);
+  EXPECT_GE(often.searches, 3);
+  EXPECT_LT(LargestDistance(Body(12), often.pose, truth), 1.0);
+}
+} // namespace RigidSearchTests
