@@ -84,34 +84,40 @@ class CellWeights
 {
 public:
   explicit CellWeights(const MeshArrays & mesh)
+    : m_Centroids(3, static_cast<Eigen::Index>(mesh.tetrahedra.size()))
+    , m_Volumes(m_Centroids.cols())
   {
-    for (const Id4 & t : mesh.tetrahedra)
+    for (Eigen::Index t = 0; t < m_Volumes.size(); ++t)
     {
       std::array<Vector3, 4> x;
+      const Id4 &            cell = mesh.tetrahedra[static_cast<std::size_t>(t)];
       std::transform(
-        t.begin(), t.end(), x.begin(), [&mesh](IdType p) { return mesh.points[static_cast<std::size_t>(p)]; });
-      m_Centroids.emplace_back((x[0] + x[1] + x[2] + x[3]) / 4.0);
-      m_Volumes.push_back(std::abs(SignedVolume(x[0], x[1], x[2], x[3])));
+        cell.begin(), cell.end(), x.begin(), [&mesh](IdType p) { return mesh.points[static_cast<std::size_t>(p)]; });
+      m_Centroids.col(t) = (x[0] + x[1] + x[2] + x[3]) / 4.0;
+      m_Volumes[t] = std::abs(SignedVolume(x[0], x[1], x[2], x[3]));
     }
   }
 
-  /** Mean section, mm^2, parallel to the cut in the slab beneath it. */
-  double
-  SectionBeneath(const FlatCut & cut) const
+  /** Whether the mean section parallel to the cut in the slab beneath it is smaller than this, mm^2. */
+  bool
+  IsSectionBeneathBelow(const FlatCut & cut, double area) const
   {
-    constexpr double slab = 10.0; // mm
-    double           volume = 0.0;
-    for (std::size_t t = 0; t < m_Volumes.size(); ++t)
+    constexpr double       slab = 10.0;  // mm
+    constexpr Eigen::Index block = 2048; // cells after which a section may be large enough to look no further
+    double                 volume = 0.0;
+    for (Eigen::Index t = 0; t < m_Volumes.size() && volume < area * slab; t += block)
     {
-      const double depth = cut.inward.dot(m_Centroids[t]) - cut.offset;
-      volume += depth > 0.0 && depth < slab ? m_Volumes[t] : 0.0;
+      const Eigen::Index   n = std::min(block, m_Volumes.size() - t);
+      const Eigen::ArrayXd depth =
+        (cut.inward.transpose() * m_Centroids.middleCols(t, n)).transpose().array() - cut.offset;
+      volume += (depth > 0.0 && depth < slab).select(m_Volumes.segment(t, n), 0.0).sum();
     }
-    return volume / slab;
+    return volume < area * slab;
   }
 
 private:
-  std::vector<Vector3> m_Centroids;
-  std::vector<double>  m_Volumes;
+  Eigen::Matrix3Xd m_Centroids;
+  Eigen::ArrayXd   m_Volumes;
 };
 } // namespace
 
@@ -123,15 +129,15 @@ FindFlatCuts(const MeshArrays & mesh)
   std::vector<FlatCut>            cuts;
   for (const FlatCut & plane : LikelyPlanes(faces))
   {
-    double area = 0.0;
+    const bool isKnown = std::any_of(cuts.begin(), cuts.end(), [&plane](const FlatCut & cut) {
+      return cut.inward.dot(plane.inward) > 0.999 && std::abs(cut.offset - plane.offset) < 1.0;
+    });
+    double     area = 0.0;
     for (const ExteriorFace & face : faces)
     {
       area += face.LiesOn(plane) ? face.area : 0.0;
     }
-    const bool isKnown = std::any_of(cuts.begin(), cuts.end(), [&plane](const FlatCut & cut) {
-      return cut.inward.dot(plane.inward) > 0.999 && std::abs(cut.offset - plane.offset) < 1.0;
-    });
-    if (!isKnown && area > 0.5 * cells.SectionBeneath(plane))
+    if (!isKnown && cells.IsSectionBeneathBelow(plane, 2.0 * area))
     {
       cuts.push_back(plane);
     }
