@@ -239,8 +239,9 @@ def angles_part(validation, chosen):
     head = ("bone", "level", "cells", "valid", "crossing", "least angles", "cells below", "mean of least angles", "volumes, %",
             "mean distance, mm", "largest, mm", "error, %", "s")
     return "\n".join(["## Levels for finite elements: `--improve-angles`\n",
-                      "The levels above → those with `--improve-angles`, which wants 5 degrees in the cortical layer and 8 elsewhere. Points move",
-                      "(surfaces' along level 1's), so that they are no subset of those before. Below: cells with a smaller angle. Mean of all",
+                      "The levels above → those with `--improve-angles`, which wants 5 degrees in the cortical layer and 8 elsewhere, and holds back",
+                      "edges of more than four times that of a regular tetrahedron of the mean volume. Points move (surfaces' along level 1's), so",
+                      "that they are no subset of those before. Below: cells with a smaller angle. Mean of all",
                       "cells' smallest dihedral angles. Where the volumes' bound of 3 % comes first, angles stay smaller: a layer 1 mm thick under",
                       "triangles 15 mm long has angles of 4 degrees, and only a thicker layer has larger ones. So it is with means: cortical cells,",
                       "half to three quarters of a level, have 29 to 35 degrees at level 1, and fewer the wider triangles are.\n", table(head, rows)])
