@@ -132,12 +132,16 @@ FindFlatCuts(const MeshArrays & mesh)
     const bool isKnown = std::any_of(cuts.begin(), cuts.end(), [&plane](const FlatCut & cut) {
       return cut.inward.dot(plane.inward) > 0.999 && std::abs(cut.offset - plane.offset) < 1.0;
     });
-    double     area = 0.0;
+    if (isKnown)
+    {
+      continue;
+    }
+    double area = 0.0;
     for (const ExteriorFace & face : faces)
     {
       area += face.LiesOn(plane) ? face.area : 0.0;
     }
-    if (!isKnown && cells.IsSectionBeneathBelow(plane, 2.0 * area))
+    if (cells.IsSectionBeneathBelow(plane, 2.0 * area))
     {
       cuts.push_back(plane);
     }

@@ -43,10 +43,9 @@ TEST(RigidSearch, WhereAllIsHopelessTheBestIsRefinedToTheEnd)
   {
     std::generate(view.values.begin(), view.values.end(), [&] { return uniform(random); });
   }
-  const auto                result = Search(views, Parameters(2));
-  RigidRegistrationResult   judged = result;
-  RigidRadiographParameters last = Parameters(2);
-  JudgePose(Body(12), views, last, Execution(), judged);
+  const auto              result = Search(views, Parameters(2));
+  RigidRegistrationResult judged = result;
+  JudgePose(Body(12), views, Parameters(2), Execution(), judged);
   EXPECT_EQ(result.searches, 2);
   EXPECT_EQ(result.quality, RegistrationQuality::Failed);
   EXPECT_EQ(result.cost, judged.cost);
