@@ -52,6 +52,23 @@ TEST(FlatCut, ARoundEndIsNone)
   EXPECT_NEAR(cuts[0].inward.z(), 1.0, 1e-9);
 }
 
+TEST(FlatCut, HasMoreThanHalfOfTheSectionBeneathIt)
+{
+  // The last 5 mm narrow to this share of the radius: the end has 0.44 and 0.57 of the mean section of 10 mm.
+  for (const double share : { 0.6, 0.7 })
+  {
+    MeshArrays mesh = Shaft(false);
+    for (Vector3 & p : mesh.points)
+    {
+      if (p.z() > 59.9)
+      {
+        p.head<2>() *= share;
+      }
+    }
+    EXPECT_EQ(FindFlatCuts(mesh).size(), share > 0.65 ? 2u : 1u) << share;
+  }
+}
+
 TEST(FlatCut, DensityFadesTowardsIt)
 {
   MeshArrays mesh = Shaft(true);
