@@ -243,6 +243,24 @@ TEST(DeformableRadiographRegistration, OneViewNeedsAPrior)
   EXPECT_LT(covariance(1, 1), 4.0 * 1.01);
 }
 
+TEST(DeformableRadiographRegistration, OneViewIsTrustedLess)
+{
+  DeformableRadiographParameters parameters = Parameters();
+  parameters.searchTranslation = parameters.searchRotation = 0.0;
+  parameters.translationDeviation = parameters.rotationDeviation = 2.0;
+  parameters.intensities = false;
+  auto       xrays = LineIntegrals();
+  const auto beside = PoseOf(0, 0, 500, 0, 0, 0);
+  const auto two = RegisterDeformable(Atlas(), xrays, beside, parameters, Execution());
+  xrays.pop_back();
+  const auto one = RegisterDeformable(Atlas(), xrays, beside, parameters, Execution());
+  // They show nothing of the bone, so that the atlas alone speaks.
+  EXPECT_TRUE(two.covariance.diagonal().tail<3>().isApproxToConstant(1.0));
+  EXPECT_TRUE(one.covariance.diagonal().tail<3>().isApproxToConstant(1.5 * 1.5));
+  // The pose's prior is what the user said.
+  EXPECT_TRUE(one.covariance.diagonal().head<3>().isApproxToConstant(2.0 * 2.0));
+}
+
 TEST(DeformableRadiographRegistration, OneViewMustBeMoreDistinctThanTwo)
 {
   // Noise leaves little of the edges.
