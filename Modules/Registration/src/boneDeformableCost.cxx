@@ -172,6 +172,24 @@ DeformableCost::Evaluate(const DeformableState & state, const Execution & execut
   return totals;
 }
 
+std::vector<double>
+DeformableCost::EvaluateCosts(const DeformableState & state, const Execution & execution) const
+{
+  const MeshArrays    mesh = m_Model.Synthesize(state.coefficients);
+  const auto          images = this->Project(mesh.points, mesh, state.pose, execution);
+  std::vector<double> values(m_Metrics.size() * m_Views.size());
+  execution.For(values.size(), [&](std::size_t i) {
+    const std::size_t v = i % m_Views.size();
+    values[i] = m_Metrics[i / m_Views.size()][v]->Evaluate(images[v].data());
+  });
+  std::vector<double> costs(m_Metrics.size(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    costs[i / m_Views.size()] += values[i] / static_cast<double>(m_Views.size());
+  }
+  return costs;
+}
+
 std::vector<Eigen::VectorXd>
 DeformableCost::SurfaceSlopes(const DeformableState & state, const Execution & execution)
 {

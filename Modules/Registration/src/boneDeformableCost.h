@@ -40,6 +40,10 @@ public:
   std::vector<MetricSum>
   Evaluate(const DeformableState & state, const Execution & execution);
 
+  /** What Evaluate has as costs, alone. */
+  std::vector<double>
+  EvaluateCosts(const DeformableState & state, const Execution & execution) const;
+
   /** Of each metric, the second derivatives by all parameters and by how far the outer surface lies outward, mm. */
   std::vector<Eigen::VectorXd>
   SurfaceSlopes(const DeformableState & state, const Execution & execution);

@@ -69,10 +69,10 @@ public:
       {
         cost.UseIntensities(state, part.Silent());
       }
-      const auto values = this->Descend(cost, state, result, part);
+      this->Descend(cost, state, result, part);
       if (last)
       {
-        this->SetCovariance(cost, state, values, result, part);
+        this->SetCovariance(cost, state, result, part);
       }
     }
     result.pose = state.pose;
@@ -196,19 +196,19 @@ private:
   Gain(const DeformableState &        at,
        const std::vector<MetricSum> & values,
        const DeformableState &        next,
-       const std::vector<MetricSum> & there,
+       const std::vector<double> &    costs,
        const std::vector<double> &    precisions) const
   {
     double gain = this->PriorCost(at) - this->PriorCost(next);
     for (std::size_t k = 0; k < values.size(); ++k)
     {
-      gain += precisions[k] * (values[k].cost - there[k].cost);
+      gain += precisions[k] * (values[k].cost - costs[k]);
     }
     return gain;
   }
 
-  /** Levenberg-Marquardt steps; the costs where they end. */
-  std::vector<MetricSum>
+  /** Levenberg-Marquardt steps. */
+  void
   Descend(DeformableCost &               cost,
           DeformableState &              at,
           DeformableRegistrationResult & result,
@@ -223,22 +223,24 @@ private:
     {
       const Posterior       posterior = this->MakePosterior(values, at);
       const DeformableState next = Moved(at, -damping.Damp(posterior.hessian).ldlt().solve(posterior.gradient));
-      auto                  there = cost.Evaluate(next, silent);
-      const double          gain = this->Gain(at, values, next, there, posterior.precisions);
+      const auto            costs = cost.EvaluateCosts(next, silent);
+      const double          gain = this->Gain(at, values, next, costs, posterior.precisions);
+      damping.Tell(gain > 0.0);
+      result.converged = damping.IsStuck() || (gain > 0.0 && gain < least);
       if (gain > 0.0)
       {
         at = next;
-        values = std::move(there);
+        if (!result.converged)
+        {
+          values = cost.Evaluate(at, silent);
+        }
       }
-      damping.Tell(gain > 0.0);
-      result.converged = damping.IsStuck() || (gain > 0.0 && gain < least);
       if (m_Observe)
       {
-        m_Observe(at.coefficients, values[0].cost);
+        m_Observe(at.coefficients, gain > 0.0 ? costs[0] : values[0].cost);
       }
       execution.Report((i + 1.0) / m_P.iterations);
     }
-    return values;
   }
 
   /** The covariance of the maximum of the posterior about the truth: of the errors of the costs' gradients, of what the
@@ -246,10 +248,10 @@ private:
   void
   SetCovariance(DeformableCost &               cost,
                 const DeformableState &        at,
-                const std::vector<MetricSum> & values,
                 DeformableRegistrationResult & result,
                 const Execution &              execution) const
   {
+    const auto values = cost.Evaluate(at, execution.Silent());
     // Where no view shows the bone and nothing was known of its pose, it may be anywhere.
     constexpr double      anywhere = 1e4; // mm
     Posterior             posterior = this->MakePosterior(values, at);

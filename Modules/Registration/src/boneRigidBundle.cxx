@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace bone
 {
@@ -82,19 +83,57 @@ public:
     }
   }
 
+  /** The cost alone. */
+  double
+  EvaluateCost(const BundleState & state, const Execution & execution) const
+  {
+    std::vector<std::vector<float>> images;
+    for (const RadiographView & view : m_Views)
+    {
+      images.emplace_back(view.GetNumberOfPixels(), 0.0f);
+    }
+    for (std::size_t b = 0; b < m_Bodies.size(); ++b)
+    {
+      std::vector<XRayGeometry::View> seen;
+      std::vector<std::vector<float>> own;
+      std::vector<float *>            pointers;
+      for (std::size_t v = 0; v < m_Views.size(); ++v)
+      {
+        seen.push_back(this->Seen(state, v, b));
+        pointers.push_back(own.emplace_back(images[v].size()).data());
+      }
+      ProjectMesh(this->PointsOf(state, b), m_Bodies[b], seen, {}, execution, pointers);
+      for (std::size_t v = 0; v < m_Views.size(); ++v)
+      {
+        std::transform(own[v].begin(), own[v].end(), images[v].begin(), images[v].begin(), std::plus<float>());
+      }
+    }
+    std::vector<double> costs(m_Views.size());
+    execution.For(costs.size(), [&](std::size_t v) { costs[v] = m_Metrics[v]->Evaluate(images[v].data()); });
+    return std::accumulate(costs.begin(), costs.end(), 0.0) / static_cast<double>(costs.size());
+  }
+
   MetricSum
   Evaluate(const BundleState & state, const Execution & execution) const
   {
-    MetricSum sum(m_Prior.size());
+    std::vector<std::vector<std::vector<float>>> images;
     for (std::size_t v = 0; v < m_Views.size(); ++v)
     {
-      auto                 images = this->Project(state, v, execution);
+      images.push_back(this->Project(state, v, execution));
+    }
+    std::vector<MetricValue> values(m_Views.size());
+    execution.For(values.size(), [&](std::size_t v) {
       std::vector<float *> pointers;
-      for (std::vector<float> & image : images)
+      for (std::vector<float> & image : images[v])
       {
         pointers.push_back(image.data());
       }
-      MetricValue           value = m_Metrics[v]->EvaluateDerivatives(pointers);
+      values[v] = m_Metrics[v]->EvaluateDerivatives(pointers);
+    });
+    MetricSum sum(m_Prior.size());
+    for (std::size_t v = 0; v < m_Views.size(); ++v)
+    {
+      MetricValue &         value = values[v];
       const Eigen::MatrixXd map = this->Parameterize(state, v);
       value.gradient = map.transpose() * value.gradient;
       value.hessian = map.transpose() * value.hessian * map;
@@ -122,12 +161,12 @@ public:
       hessian.diagonal() += m_Prior;
       const double      floor = 1e-12 * hessian.diagonal().maxCoeff();
       const BundleState next = this->Moved(at, -damping.Damp(hessian, floor).ldlt().solve(gradient));
-      MetricSum         there = this->Evaluate(next, execution.Silent());
-      const double      gain = precision * (value.cost - there.cost) + this->PriorCost(at) - this->PriorCost(next);
+      const double      there = this->EvaluateCost(next, execution.Silent());
+      const double      gain = precision * (value.cost - there) + this->PriorCost(at) - this->PriorCost(next);
       if (gain > 0.0)
       {
         at = next;
-        value = std::move(there);
+        value = this->Evaluate(at, execution.Silent());
       }
       damping.Tell(gain > 0.0);
       isDone = damping.IsStuck() || (gain > 0.0 && gain < least);
@@ -223,20 +262,33 @@ private:
     return map;
   }
 
+  /** A body's points, its surface as far outward as it is found to be. */
+  std::vector<Vector3>
+  PointsOf(const BundleState & state, std::size_t body) const
+  {
+    std::vector<Vector3> points = m_Bodies[body].points;
+    for (std::size_t p = 0; p < points.size(); ++p)
+    {
+      points[p] += state.outward[body] * m_Outward[body][p];
+    }
+    return points;
+  }
+
+  /** A view from a body's model. */
+  XRayGeometry::View
+  Seen(const BundleState & state, std::size_t view, std::size_t body) const
+  {
+    return state.poses[body].ToModelSpace(state.motions[view].ToModelSpace(m_Views[view].view));
+  }
+
   /** The radiograph of all bodies in one view, then its derivatives by the bodies' parameters. */
   std::vector<std::vector<float>>
   Project(const BundleState & state, std::size_t view, const Execution & execution) const
   {
     const std::size_t               pixels = m_Views[view].GetNumberOfPixels();
     std::vector<std::vector<float>> images(1 + OfBody * m_Bodies.size(), std::vector<float>(pixels, 0.0f));
-    const auto                      seen = state.motions[view].ToModelSpace(m_Views[view].view);
     for (std::size_t b = 0; b < m_Bodies.size(); ++b)
     {
-      std::vector<Vector3> points = m_Bodies[b].points;
-      for (std::size_t p = 0; p < points.size(); ++p)
-      {
-        points[p] += state.outward[b] * m_Outward[b][p];
-      }
       RadiographModes modes;
       modes.pose = true;
       modes.poseCentre = state.poses[b].centre;
@@ -247,7 +299,8 @@ private:
       {
         pointers.push_back(images[1 + OfBody * b + k].data());
       }
-      ProjectMeshDerivatives(points, m_Bodies[b], state.poses[b].ToModelSpace(seen), {}, modes, execution, pointers);
+      ProjectMeshDerivatives(
+        this->PointsOf(state, b), m_Bodies[b], this->Seen(state, view, b), {}, modes, execution, pointers);
       std::transform(own.begin(), own.end(), images[0].begin(), images[0].begin(), std::plus<float>());
     }
     return images;

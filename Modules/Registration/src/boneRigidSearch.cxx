@@ -365,19 +365,22 @@ private:
     at.converged = false;
     for (int i = 0; i < m_P.iterations && !at.converged; ++i)
     {
-      const Matrix6     damped = damping.Damp(Matrix6(value.hessian), 1e-12 * value.hessian.diagonal().maxCoeff());
-      const RigidPose   next = this->Bound(at.pose.Moved(-damped.ldlt().solve(value.gradient)));
-      const double      length = this->Length(at.pose.StepTo(next));
-      const MetricValue there = cost.EvaluateDerivatives(next, execution.Silent());
-      const double      gain = at.cost - there.cost;
+      const Matrix6   damped = damping.Damp(Matrix6(value.hessian), 1e-12 * value.hessian.diagonal().maxCoeff());
+      const RigidPose next = this->Bound(at.pose.Moved(-damped.ldlt().solve(value.gradient)));
+      const double    length = this->Length(at.pose.StepTo(next));
+      const double    there = cost.Evaluate(next, execution.Silent());
+      const double    gain = at.cost - there;
+      damping.Tell(gain > 0.0);
+      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < least);
       if (gain > 0.0)
       {
         at.pose = next;
-        at.cost = there.cost;
-        value = there;
+        at.cost = there;
+        if (!at.converged)
+        {
+          value = cost.EvaluateDerivatives(at.pose, execution.Silent());
+        }
       }
-      damping.Tell(gain > 0.0);
-      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < least);
       if (m_Observe)
       {
         m_Observe(at.pose, at.cost);
