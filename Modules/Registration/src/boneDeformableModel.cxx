@@ -3,9 +3,7 @@
  *=========================================================================*/
 #include "boneDeformableModel.h"
 
-#include "boneBuildLevels.h"
 #include "boneMeanDensities.h"
-#include "boneMeshValidator.h"
 #include "boneResidualModes.h"
 #include "boneSmoothModes.h"
 
@@ -200,17 +198,9 @@ CoarseModel::MovePoints(const Eigen::VectorXd & coefficients) const
 CoarseModel
 DeformableModel::Coarsen(std::size_t tetrahedra, Eigen::Index modes, const Execution & execution) const
 {
-  CoarseModel         coarse{ WithMeanDensities(mean), {} };
-  std::vector<IdType> kept(mean.points.size());
-  std::iota(kept.begin(), kept.end(), IdType{ 0 });
-  if (tetrahedra < mean.tetrahedra.size() && ValidateMesh(mean).IsValid())
-  {
-    TetraCollapseParameters parameters;
-    parameters.levels = { static_cast<IdType>(tetrahedra) };
-    BuiltLevel level = BuildLevels(coarse.mesh, parameters, execution).front();
-    coarse.mesh = std::move(level.mesh);
-    kept = std::move(level.parentPoint);
-  }
+  BuiltLevel                  level = SimplifyMeans(mean, tetrahedra, execution);
+  const std::vector<IdType> & kept = level.parentPoint;
+  CoarseModel                 coarse{ std::move(level.mesh), {} };
   for (Eigen::Index k = 0; k < std::min(modes, shapeModes); ++k)
   {
     const std::vector<Vector3> & mode = displacements[static_cast<std::size_t>(k)];

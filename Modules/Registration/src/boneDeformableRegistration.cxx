@@ -7,6 +7,7 @@
 #include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
+#include "boneMeanDensities.h"
 #include "boneSymmetricEigen.h"
 
 #include <Eigen/Cholesky>
@@ -103,7 +104,6 @@ private:
   {
     constexpr int      generations = 100;
     constexpr double   narrow = 0.05;        // of the box
-    constexpr int      tetrahedra = 1000;    // of the simplified mean
     constexpr double   mostDeviations = 4.0; // of a mode of shape
     constexpr double   beyond = 1.25;        // turns about three axes add up
     const Eigen::Index shape = std::min<Eigen::Index>(m_P.searchModes, m_Model.shapeModes);
@@ -117,7 +117,7 @@ private:
       return state;
     }
     const DeformableCost cost(m_Model, m_Views, m_P, m_P.searchPixels);
-    const CoarseModel    model = m_Model.Coarsen(tetrahedra, shape, execution.Silent());
+    const CoarseModel    model = m_Model.Coarsen(SearchTetrahedra, shape, execution.Silent());
     EvolutionStrategy    strategy(
       Eigen::VectorXd::Zero(box.size()), 0.4, m_P.population, static_cast<std::uint64_t>(m_P.seed));
     const auto at = [&](const Eigen::VectorXd & candidate) {

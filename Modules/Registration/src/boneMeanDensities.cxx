@@ -4,6 +4,7 @@
 #include "boneMeanDensities.h"
 
 #include "boneBernstein.h"
+#include "boneMeshValidator.h"
 
 #include <numeric>
 
@@ -24,5 +25,22 @@ WithMeanDensities(const MeshArrays & mesh)
     means.coefficients[t] = std::accumulate(first, first + count, 0.0) / count;
   }
   return means;
+}
+
+BuiltLevel
+SimplifyMeans(const MeshArrays & mesh, std::size_t tetrahedra, const Execution & execution)
+{
+  MeshArrays means = WithMeanDensities(mesh);
+  if (tetrahedra < mesh.tetrahedra.size() && ValidateMesh(mesh).IsValid())
+  {
+    TetraCollapseParameters parameters;
+    parameters.levels = { static_cast<IdType>(tetrahedra) };
+    return std::move(BuildLevels(means, parameters, execution).front());
+  }
+  BuiltLevel same;
+  same.mesh = std::move(means);
+  same.parentPoint.resize(mesh.points.size());
+  std::iota(same.parentPoint.begin(), same.parentPoint.end(), IdType{ 0 });
+  return same;
 }
 } // namespace bone

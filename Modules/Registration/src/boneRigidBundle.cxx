@@ -150,7 +150,7 @@ public:
           const Execution &                                      execution,
           const std::function<void(const RigidPose &, double)> & observe) const
   {
-    constexpr double least = 0.02; // of the logarithm of the posterior
+    constexpr double least = 0.1; // of the logarithm of the posterior
     Damping          damping;
     bool             isDone = false;
     for (int i = 0; i < m_P.iterations && !isDone; ++i)
