@@ -71,10 +71,31 @@ TEST(RigidSearch, APoseThatIsNotDistinctIsOkWhenThreeSearchesFoundIt)
   judged.pose = truth;
   JudgePose(Body(12), views, Parameters(1), Execution(), judged);
   ASSERT_EQ(judged.quality, RegistrationQuality::Suspect) << judged.distinctness;
-  const auto once = Search(views, Parameters(2)), often = Search(views, Parameters(12));
+  // Images about as fine before the last step: on coarser ones noise is less, and the pose clear.
+  RigidRadiographParameters twice = Parameters(2), dozen = Parameters(12);
+  twice.searchPixels = dozen.searchPixels = 80;
+  const auto once = Search(views, twice), often = Search(views, dozen);
   EXPECT_EQ(once.quality, RegistrationQuality::Suspect);
   EXPECT_EQ(often.quality, RegistrationQuality::Ok);
   EXPECT_GE(often.searches, 3);
   EXPECT_LT(LargestDistance(Body(12), often.pose, truth), 1.0);
+}
+
+TEST(RigidSearch, AClearPoseIsLeftToTheLastAdjustment)
+{
+  const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
+  const auto      views = TwoXRays(Body(12), truth);
+  const auto      result = Search(views, Parameters(3));
+  EXPECT_EQ(result.quality, RegistrationQuality::Ok);
+  EXPECT_EQ(result.searches, 1);
+  EXPECT_LT(LargestDistance(Body(12), result.pose, truth), 2.0);
+  // It was judged on smaller images.
+  RigidRegistrationResult judged = result;
+  JudgePose(Body(12), views, Parameters(3), Execution(), judged);
+  EXPECT_NE(result.cost, judged.cost);
+  // Beyond what was to be searched it is not clear.
+  RigidRadiographParameters narrow = Parameters(1);
+  narrow.searchTranslation = 4.5;
+  EXPECT_EQ(Search(views, narrow).quality, RegistrationQuality::Suspect);
 }
 } // namespace RigidSearchTests
