@@ -17,7 +17,7 @@ namespace bone
   value(int, pixels, Pixels, 256, ParameterRange::Between(32, 4096), "pixels", "pixels", \
     "Longer side of the X-rays in the last step") \
   value(int, searchPixels, SearchPixels, 96, ParameterRange::Between(32, 4096), "pixels", "search-pixels", \
-    "Longer side of the X-rays in the search") \
+    "Longer side of the X-rays in the search, where the bone takes up most of it; more where it takes up little") \
   value(int, patch, Patch, 8, ParameterRange::Between(4, 1024), "pixels", "patch", \
     "Side of the patches in which gradients are compared") \
   value(double, sigma, Sigma, 1.0, ParameterRange::Between(0.3, 20.0), "pixels", "sigma", \
