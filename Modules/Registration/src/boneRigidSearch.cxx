@@ -62,8 +62,8 @@ ShareOfXRay(const std::vector<Vector3> & points, const RigidPose & pose, const s
 std::vector<Resolution>
 MakeResolutions(const RigidRadiographParameters & parameters, std::size_t levels, double share)
 {
-  constexpr double        framed = 0.8; // of the X-ray
-  const auto              wanted = std::lround(parameters.searchPixels * std::max(1.0, framed / share));
+  constexpr double        enough = 0.6; // of the X-ray
+  const auto              wanted = std::lround(parameters.searchPixels * std::max(1.0, enough / share));
   std::vector<Resolution> resolutions;
   for (long pixels = wanted; pixels < parameters.pixels; pixels *= 2)
   {
