@@ -58,12 +58,13 @@ ShareOfXRay(const std::vector<Vector3> & points, const RigidPose & pose, const s
 }
 
 /** From SearchPixels on, or from more where a model takes up little of an X-ray: what counts is how fine it shows the
- * model. On 96 pixels, a hip bone that took up a third of them was called `ok` 3 mm from its place. */
+ * model. On 96 pixels, a hip bone that took up a third of them was called `ok` 2 mm and 3 degrees from its place. */
 std::vector<Resolution>
 MakeResolutions(const RigidRadiographParameters & parameters, std::size_t levels, double share)
 {
-  constexpr double        enough = 0.6; // of the X-ray
-  const auto              wanted = std::lround(parameters.searchPixels * std::max(1.0, enough / share));
+  constexpr double enough = 0.6; // of the X-ray
+  const auto       wanted =
+    std::lround(std::min<double>(parameters.pixels, parameters.searchPixels * std::max(1.0, enough / share)));
   std::vector<Resolution> resolutions;
   for (long pixels = wanted; pixels < parameters.pixels; pixels *= 2)
   {
