@@ -213,7 +213,7 @@ public:
     m_IsSearched = m_Box.minCoeff() > 0.0 || m_Box.maxCoeff() > 0.0;
     if (m_IsSearched)
     {
-      m_Means = SimplifyMeans(levels[m_Resolutions.front().level], SearchTetrahedra, Execution()).mesh;
+      m_Means = SimplifyMeans(levels.back(), SearchTetrahedra, Execution()).mesh;
     }
     for (const MeshArrays & level : levels)
     {
