@@ -63,11 +63,13 @@ LabelOptions::AddTo(CLI::App * command, const std::string & help, bool several)
 {
   auto * labelsOption = command->add_option("--labels", file, help);
   command
-    ->add_option("--label",
-                 wanted,
-                 several ? "Value or name of the bone in the label map; several, apart by commas or each after a "
-                           "--label, are built one after another into folders of their own. Default: its only label"
-                         : "Value or name of the bone in the label map; default: its only label")
+    ->add_option(
+      "--label",
+      wanted,
+      several ? "Value or name of the bone in the label map; several, apart by commas, each after a --label, or as a "
+                "pattern ('rib_*'; '*': all), are built one after another into folders of their own. Default: "
+                "its only label"
+              : "Value or name of the bone in the label map; default: its only label")
     ->expected(1)
     ->multi_option_policy(several ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::Throw)
     ->type_name("VALUE|NAME");
@@ -144,6 +146,19 @@ ChooseNamed(const LabelFile & file, const LabelOptions & options)
     const std::string table = options.names.empty() ? "" : " with the names of " + options.names;
     throw IOError(options.file + table, ErrorLine(error));
   }
+}
+
+/** Throws where a pattern means several bones, and one is needed. */
+template <typename TBone>
+TBone
+TheOnly(std::vector<TBone> bones, const LabelOptions & options)
+{
+  if (bones.size() > 1)
+  {
+    throw UsageError("--label " + options.wanted.front() + " means " + std::to_string(bones.size()) + " labels of " +
+                     options.file + ", and one is needed");
+  }
+  return std::move(bones.front());
 }
 
 LabelFile
@@ -228,6 +243,12 @@ ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Sessi
   return bones;
 }
 
+LabelledBone
+ReadOneBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session, bool byRegion)
+{
+  return TheOnly(ReadBoneLabels(options, ct, session, byRegion), options);
+}
+
 LabelImage::Pointer
 ReadLabelsOnGrid(const std::string & path, const itk::ImageBase<3> * ct, Session & session)
 {
@@ -241,7 +262,12 @@ ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Se
   std::vector<BoneInput> inputs;
   if (!options.labels.file.empty())
   {
-    for (LabelledBone & bone : ReadBoneLabels(options.labels, ct, session, byRegion))
+    auto bones = ReadBoneLabels(options.labels, ct, session, byRegion);
+    if (!options.init.empty())
+    {
+      bones = { TheOnly(bones, options.labels) };
+    }
+    for (LabelledBone & bone : bones)
     {
       inputs.push_back({ std::move(bone), nullptr });
     }
@@ -260,7 +286,7 @@ ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Se
     if (image && options.labels.file.empty())
     {
       const LabelOptions labels{ options.init, options.labels.wanted, "" };
-      bone = ChooseNamed(ReadNamedLabels(labels), labels).front();
+      bone = TheOnly(ChooseNamed(ReadNamedLabels(labels), labels), labels);
       bone.labels = nullptr;
     }
     inputs.front().contours = ReadContours(options.init, { options.structure, bone.label, axis });
@@ -268,4 +294,9 @@ ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Se
   return inputs;
 }
 
+BoneInput
+ReadOneBone(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session)
+{
+  return TheOnly(ReadBones(options, axis, ct, session), options.labels);
+}
 } // namespace bone

@@ -32,7 +32,7 @@ OpenChosenCT(const std::string & path, const std::string & series, Session & ses
 struct LabelOptions
 {
   std::string              file;
-  std::vector<std::string> wanted; ///< values or names; none: the only label
+  std::vector<std::string> wanted; ///< values, names or patterns of names; none: the only label
   std::string              names;  ///< table of names
 
   /** Adds --labels, --label and --label-names. */
@@ -45,6 +45,10 @@ struct LabelOptions
  * it. Throws UsageError that lists the labels where the bone is not clear. */
 std::vector<LabelledBone>
 ReadBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session, bool byRegion = false);
+
+/** The same of one bone. Throws UsageError where a pattern means several. */
+LabelledBone
+ReadOneBoneLabels(const LabelOptions & options, const itk::ImageBase<3> * ct, Session & session, bool byRegion = false);
 
 /** A label map of one layer on the CT's grid, resampled with a warning where it is not. */
 LabelImage::Pointer
@@ -76,6 +80,9 @@ struct BoneInput
 std::vector<BoneInput>
 ReadBones(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session, bool byRegion = false);
 
+/** The same of one bone, as \ref ReadOneBoneLabels. */
+BoneInput
+ReadOneBone(const BoneOptions & options, unsigned int axis, const CTImage * ct, Session & session);
 } // namespace bone
 
 #endif

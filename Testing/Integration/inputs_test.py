@@ -167,6 +167,24 @@ class Labels(TestCase):
         with open("both/femur_left/model_L1.vtu", "rb") as first, open("again/model_L1.vtu", "rb") as second:
             self.assertEqual(first.read(), second.read())
 
+    def test_patterns_of_names(self):
+        with open("names.csv", "w") as file:
+            file.write("25,Rib.left\n26,rib.right\n")
+        cost = lambda *label: self.succeed("info", "ct.nii.gz", "--cost", "--labels", "labels.nii.gz", *label)[0]
+        named = ("--label-names", "names.csv", "--label")
+        both, one = cost("--label", "25,26"), cost("--label", "26")
+        for pattern in ("rib.*", "*", "RIB.left,rib.R*", "???.*"):
+            self.assertEqual(cost(*named, pattern), both, pattern)
+        self.assertEqual(cost(*named, "*.r?ght"), one)
+        self.assertEqual(cost("--label", "2*"), both, "by value where there are no names")
+        self.assertNotEqual(both, one)
+        self.succeed("build", "ct.nii.gz", "--labels", "labels.nii.gz", *named, "rib.*", "-o", "out", *SMALL)
+        self.assertEqual(sorted(os.listdir("out")), ["Rib.left", "rib.right"])
+        self.refuse("info", "ct.nii.gz", "--cost", "--labels", "labels.nii.gz", *named, "rib?left?", says="no label rib?left?")
+        for command in (["crop", "ct.nii.gz", "-o", "o.mha"], ["contours", "ct.nii.gz", "-o", "o.vtp"],
+                        ["contours", "ct.nii.gz", "--init", "labels.nii.gz", "-o", "o.vtp"]):
+            self.refuse_usage(*command, "--labels", "labels.nii.gz", *named, "rib.*", says="means 2 labels of labels.nii.gz")
+
     def test_one_bone_of_several_that_fails(self):
         self.labels[:2, :2, :2] = 7  # too small to be tiled
         write_image("labels.nii.gz", self.labels, SPACING)

@@ -89,7 +89,7 @@ RunContours(const ContoursOptions & options, Session & session)
   Verify(options);
   BuildParameters        parameters = options.parameters;
   const CTImage::Pointer ct = ReadChosenCT(options.ct, options.series, session);
-  const BoneInput        read = ReadBones(options.bone, parameters.plan.axis, ct, session).front();
+  const BoneInput        read = ReadOneBone(options.bone, parameters.plan.axis, ct, session);
   parameters.plan.label = read.bone.label;
   const int trials = options.tetrahedra ? 4 : 0;
   session.Expect({ { "contours", 2.0 },

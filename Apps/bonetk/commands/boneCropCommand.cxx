@@ -27,7 +27,7 @@ RunCrop(const CropOptions & options, Session & session)
 {
   VerifyOutputs({ { options.output, ImageExtensions() }, { options.labelsOutput, ImageExtensions() } });
   const VolumeSource::Pointer ct = OpenChosenCT(options.ct, options.series, session);
-  const LabelledBone          bone = ReadBoneLabels(options.labels, ct->GetOutput(), session, true).front();
+  const LabelledBone          bone = ReadOneBoneLabels(options.labels, ct->GetOutput(), session, true);
   const BuildInput            input = CropInOrder(ct->GetOutput(), bone, nullptr, options.plan);
   WriteImage(input.ct, options.output);
   if (!options.labelsOutput.empty())

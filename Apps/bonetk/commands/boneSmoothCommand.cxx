@@ -46,7 +46,7 @@ MakeQuality(const SmoothOptions & options, Session & session)
   }
   if (!options.labels.file.empty())
   {
-    const LabelledBone bone = ReadBoneLabels(options.labels, nullptr, session).front();
+    const LabelledBone bone = ReadOneBoneLabels(options.labels, nullptr, session);
     quality->SetLabelImage(bone.labels);
     quality->SetLabel(bone.label);
     if (!options.distance)

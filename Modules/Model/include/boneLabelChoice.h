@@ -29,6 +29,9 @@ CountLabels(const LabelFile & file);
 
 /** \brief The bones that are wanted, each by its value or its name (whose case may differ where no other has it).
  *
+ * A name with * or ?, which no label has as it is, means all labels whose names (or values, where they have none) match
+ * it, whatever their case, in the file's order: "rib_*", or "*" for all.
+ *
  * None wanted: the only label there is, or all where the map states that they are regions of one bone
  * (\ref StatesOneBone). Throws itk::ExceptionObject that lists the labels where none was named of several, one that is
  * wanted is not there, or is not the only one of its name or, in several layers, of its value. */

@@ -5,6 +5,8 @@
 
 #include "boneLabelValue.h"
 
+#include <itksys/Glob.hxx>
+#include <itksys/RegularExpression.hxx>
 #include <itksys/SystemTools.hxx>
 
 #include <algorithm>
@@ -59,6 +61,25 @@ Find(const std::vector<Entry> & entries, const std::string & wanted)
   auto found = find([&](const Entry & entry) { return std::to_string(entry.count.value) == wanted; });
   found = found.empty() ? find([&](const Entry & entry) { return entry.count.name == wanted; }) : found;
   return found.empty() ? find([&](const Entry & entry) { return lower(entry.count.name) == lower(wanted); }) : found;
+}
+
+bool
+IsPattern(const std::string & word)
+{
+  return word.find_first_of("*?") != std::string::npos;
+}
+
+/** The entries whose names, whatever their case, or values, where they have none, a pattern of * and ? means. */
+std::vector<Entry>
+FindAll(const std::vector<Entry> & entries, const std::string & pattern)
+{
+  const auto                lower = [](const std::string & text) { return itksys::SystemTools::LowerCase(text); };
+  itksys::RegularExpression expression(itksys::Glob::PatternToRegex(lower(pattern), true, true));
+  std::vector<Entry>        found;
+  std::copy_if(entries.begin(), entries.end(), std::back_inserter(found), [&](const Entry & entry) {
+    return expression.find(entry.count.name.empty() ? std::to_string(entry.count.value) : lower(entry.count.name));
+  });
+  return found;
 }
 
 LabelledBone
@@ -129,17 +150,22 @@ ChooseBones(const LabelFile & file, const std::vector<std::string> & wanted)
   std::vector<LabelledBone> bones;
   for (const std::string & word : wanted)
   {
-    const std::vector<Entry> found = Find(entries, word);
+    std::vector<Entry> found = Find(entries, word);
+    const bool         isPattern = found.empty() && IsPattern(word);
+    found = isPattern ? FindAll(entries, word) : found;
     if (found.empty())
     {
       itkGenericExceptionMacro("The label map has no label " << word << "; " << List(entries));
     }
-    if (found.size() > 1)
+    if (found.size() > 1 && !isPattern)
     {
       itkGenericExceptionMacro("Of the labels of the map " << found.size() << " are called " << word << "; "
                                                            << List(entries));
     }
-    bones.push_back(ToBone(file, found.front()));
+    for (const Entry & entry : found)
+    {
+      bones.push_back(ToBone(file, entry));
+    }
   }
   return bones;
 }
