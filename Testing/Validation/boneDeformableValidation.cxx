@@ -34,6 +34,7 @@ struct Trials
   std::vector<std::string>       only;
   std::vector<double>            angles{ 0, 90 };
   int                            pixels{ 256 };
+  double                         room{ 0.1 };
   double                         translation{ 10 };
   double                         rotation{ 10 };
   std::uint64_t                  seed{ 1 };
@@ -124,10 +125,11 @@ Run(const Trials & trials)
     std::vector<RadiographView> views;
     for (const double angle : trials.angles)
     {
-      views.push_back(Simulate(ct,
-                               MakeView(truth.points, Vector3::UnitY(), Vector3::UnitX(), angle, trials.pixels),
-                               trials.simulation,
-                               random));
+      views.push_back(
+        Simulate(ct,
+                 MakeView(truth.points, Vector3::UnitY(), Vector3::UnitX(), angle, trials.pixels, trials.room),
+                 trials.simulation,
+                 random));
     }
     const RigidPose start = Disturb(right, trials, random);
     const auto      clock = std::chrono::steady_clock::now();
@@ -229,6 +231,7 @@ main(int argc, char * argv[])
   app.add_option("--only", trials.only, "Subjects");
   app.add_option("--angles", trials.angles, "Of the views about the bone's axis, degrees");
   app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
+  app.add_option("--room", trials.room, "On each side of the bone in the X-rays, of the box about it");
   app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");
   app.add_option("--rotation", trials.rotation, "and so many degrees about each");
   app.add_option("--seed", trials.seed);

@@ -81,10 +81,15 @@ Simulate(const CTImage *            ct,
   return result;
 }
 
-/** A square view of the points' box along a direction turned by `angle` degrees about `up` from `front`, with some
- * room: 700 mm from the source to the box, 1000 mm to the detector. */
+/** A square view of the points' box along a direction turned by `angle` degrees about `up` from `front`, with `room` on
+ * each side, of the box's sides: 700 mm from the source to the box, 1000 mm to the detector. */
 inline XRayGeometry::View
-MakeView(const std::vector<Vector3> & points, const Vector3 & front, const Vector3 & up, double angle, int pixels)
+MakeView(const std::vector<Vector3> & points,
+         const Vector3 &              front,
+         const Vector3 &              up,
+         double                       angle,
+         int                          pixels,
+         double                       room = 0.1)
 {
   Vector3 lower = Vector3::Constant(1e30), upper = Vector3::Constant(-1e30);
   for (const Vector3 & x : points)
@@ -92,10 +97,10 @@ MakeView(const std::vector<Vector3> & points, const Vector3 & front, const Vecto
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
-  const Vector3 room = 0.1 * (upper - lower);
+  const Vector3 border = room * (upper - lower);
   const double  turn = angle * std::acos(-1.0) / 180.0;
   const Vector3 beam = std::cos(turn) * front + std::sin(turn) * front.cross(up);
-  auto          view = XRayGeometry::Framing(lower - room, upper + room, beam, up, 700, 1000, pixels);
+  auto          view = XRayGeometry::Framing(lower - border, upper + border, beam, up, 700, 1000, pixels);
   // A square detector about the same centre.
   const Vector3 centre = view.detectorOrigin + 0.5 * (view.size[0] - 1) * view.spacing[0] * view.detectorU +
                          0.5 * (view.size[1] - 1) * view.spacing[1] * view.detectorV;

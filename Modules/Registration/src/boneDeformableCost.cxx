@@ -190,21 +190,25 @@ DeformableCost::EvaluateCosts(const DeformableState & state, const Execution & e
   return costs;
 }
 
-std::vector<Eigen::VectorXd>
-DeformableCost::SurfaceSlopes(const DeformableState & state, const Execution & execution)
+std::vector<MetricSum>
+DeformableCost::Evaluate(const DeformableState &        state,
+                         std::vector<Eigen::VectorXd> & surfaceSlopes,
+                         const Execution &              execution)
 {
   m_Modes.shape.push_back(OutwardMove(m_Model.Synthesize(state.coefficients)));
   const auto values = this->Evaluate(state, execution);
   const auto densities = static_cast<Eigen::Index>(m_Modes.density.size());
   const auto surface = static_cast<Eigen::Index>(m_Modes.Count()) - densities - 1;
   m_Modes.shape.pop_back();
-  std::vector<Eigen::VectorXd> slopes;
+  std::vector<MetricSum> rest;
+  surfaceSlopes.clear();
   for (const MetricSum & value : values)
   {
-    slopes.emplace_back(surface + densities);
-    slopes.back() << value.hessian.col(surface).head(surface), value.hessian.col(surface).tail(densities);
+    rest.push_back(value.Without(surface));
+    surfaceSlopes.emplace_back(surface + densities);
+    surfaceSlopes.back() << value.hessian.col(surface).head(surface), value.hessian.col(surface).tail(densities);
   }
-  return slopes;
+  return rest;
 }
 
 double

@@ -44,9 +44,10 @@ public:
   std::vector<double>
   EvaluateCosts(const DeformableState & state, const Execution & execution) const;
 
-  /** Of each metric, the second derivatives by all parameters and by how far the outer surface lies outward, mm. */
-  std::vector<Eigen::VectorXd>
-  SurfaceSlopes(const DeformableState & state, const Execution & execution);
+  /** What Evaluate has, and of each metric the second derivatives by all parameters and by how far the outer surface
+   * lies outward, mm. */
+  std::vector<MetricSum>
+  Evaluate(const DeformableState & state, std::vector<Eigen::VectorXd> & surfaceSlopes, const Execution & execution);
 
   /** The gradients' cost alone, of another model. */
   double

@@ -7,6 +7,7 @@
 #include "boneDeformableCost.h"
 #include "boneEvolutionStrategy.h"
 #include "boneFlatCut.h"
+#include "boneImageResolutions.h"
 #include "boneMeanDensities.h"
 #include "boneSymmetricEigen.h"
 
@@ -45,6 +46,7 @@ public:
     , m_Observe(observe)
     , m_Model(atlas, parameters)
     , m_Initial(initial.About(CentreOf(atlas.mean.points)))
+    , m_Resolutions(ImageResolutions(parameters.searchPixels, parameters.pixels, atlas.mean.points, m_Initial, views))
   {
     this->MakePrior();
   }
@@ -54,18 +56,12 @@ public:
   {
     DeformableRegistrationResult result;
     DeformableState              state = this->Search(execution.Part(0.0, 0.3));
-    std::vector<int>             resolutions;
-    for (int pixels = m_P.searchPixels; pixels < m_P.pixels; pixels *= 2)
+    for (std::size_t i = 0; i < m_Resolutions.size(); ++i)
     {
-      resolutions.push_back(pixels);
-    }
-    resolutions.push_back(m_P.pixels);
-    for (std::size_t i = 0; i < resolutions.size(); ++i)
-    {
-      const auto      share = 0.6 / static_cast<double>(resolutions.size());
+      const auto      share = 0.6 / static_cast<double>(m_Resolutions.size());
       const Execution part = execution.Part(0.3 + share * static_cast<double>(i), 0.3 + share * (i + 1.0));
-      const bool      last = i + 1 == resolutions.size();
-      DeformableCost  cost(m_Model, m_Views, m_P, resolutions[i]);
+      const bool      last = i + 1 == m_Resolutions.size();
+      DeformableCost  cost(m_Model, m_Views, m_P, m_Resolutions[i]);
       if (last && m_P.intensities)
       {
         cost.UseIntensities(state, part.Silent());
@@ -116,7 +112,7 @@ private:
     {
       return state;
     }
-    const DeformableCost cost(m_Model, m_Views, m_P, m_P.searchPixels);
+    const DeformableCost cost(m_Model, m_Views, m_P, m_Resolutions.front());
     const CoarseModel    model = m_Model.Coarsen(SearchTetrahedra, shape, execution.Silent());
     EvolutionStrategy    strategy(
       Eigen::VectorXd::Zero(box.size()), 0.4, m_P.population, static_cast<std::uint64_t>(m_P.seed));
@@ -251,7 +247,8 @@ private:
                 DeformableRegistrationResult & result,
                 const Execution &              execution) const
   {
-    const auto values = cost.Evaluate(at, execution.Silent());
+    std::vector<Eigen::VectorXd> slopes; // by the surface
+    const auto                   values = cost.Evaluate(at, slopes, execution.Silent());
     // Where no view shows the bone and nothing was known of its pose, it may be anywhere.
     constexpr double      anywhere = 1e4; // mm
     Posterior             posterior = this->MakePosterior(values, at);
@@ -261,7 +258,6 @@ private:
     result.precision = posterior.precisions[0];
     result.intensityPrecision = posterior.precisions.size() > 1 ? posterior.precisions[1] : 0.0;
     const auto      size = posterior.hessian.rows();
-    const auto      slopes = cost.SurfaceSlopes(at, execution.Silent());
     Eigen::MatrixXd errors = known.asDiagonal();
     Eigen::VectorXd ofSurface = Eigen::VectorXd::Zero(size);
     for (std::size_t k = 0; k < values.size(); ++k)
@@ -389,6 +385,7 @@ private:
   const std::function<void(const Eigen::VectorXd &, double)> & m_Observe;
   DeformableModel                                              m_Model;
   RigidPose                                                    m_Initial;
+  std::vector<int>                                             m_Resolutions; ///< pixels, from coarse to fine
   Eigen::VectorXd                                              m_Prior;
 };
 } // namespace

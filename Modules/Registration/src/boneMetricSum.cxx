@@ -24,6 +24,25 @@ ScatterOf(const MetricValue & value, Eigen::Index width)
   }
   return sums * sums.transpose();
 }
+
+Eigen::VectorXd
+WithoutRow(const Eigen::VectorXd & vector, Eigen::Index row)
+{
+  Eigen::VectorXd rest(vector.size() - 1);
+  rest << vector.head(row), vector.tail(rest.size() - row);
+  return rest;
+}
+
+/** Without a row and the column of the same number. */
+Eigen::MatrixXd
+WithoutRowAndColumn(const Eigen::MatrixXd & matrix, Eigen::Index row)
+{
+  const Eigen::Index size = matrix.rows() - 1, after = size - row;
+  Eigen::MatrixXd    rest(size, size);
+  rest << matrix.topLeftCorner(row, row), matrix.topRightCorner(row, after), matrix.bottomLeftCorner(after, row),
+    matrix.bottomRightCorner(after, after);
+  return rest;
+}
 } // namespace
 
 MetricSum::MetricSum(Eigen::Index parameters)
@@ -43,6 +62,19 @@ MetricSum::Add(const MetricValue & value, double share)
   {
     scatters[k] += share * share * ScatterOf(value, Eigen::Index{ 1 } << k);
   }
+}
+
+MetricSum
+MetricSum::Without(Eigen::Index parameter) const
+{
+  MetricSum rest(gradient.size() - 1);
+  rest.cost = cost;
+  rest.gradient = WithoutRow(gradient, parameter);
+  rest.hessian = WithoutRowAndColumn(hessian, parameter);
+  std::transform(scatters.begin(), scatters.end(), rest.scatters.begin(), [parameter](const Eigen::MatrixXd & scatter) {
+    return WithoutRowAndColumn(scatter, parameter);
+  });
+  return rest;
 }
 
 double

@@ -27,6 +27,10 @@ struct MetricSum
   void
   Add(const MetricValue & value, double share);
 
+  /** The same without one of the parameters. */
+  MetricSum
+  Without(Eigen::Index parameter) const;
+
   /** By how much the cost has to count for its curvature to agree with the scatter: the least of those that the three
    * sizes of blocks give, as errors may correlate over more than one. 0 where no parameter changes the cost. */
   double

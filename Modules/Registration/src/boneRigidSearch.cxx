@@ -5,7 +5,7 @@
 
 #include "boneDamping.h"
 #include "boneEvolutionStrategy.h"
-#include "boneLandmarkProjection.h"
+#include "boneImageResolutions.h"
 #include "boneMeanDensities.h"
 #include "bonePatchGradientCorrelation.h"
 #include "bonePrincipalModes.h"
@@ -34,46 +34,14 @@ struct Resolution
   std::size_t level;
 };
 
-/** The share of the longer side of an X-ray that the model takes up at a pose, where that is least. */
-double
-ShareOfXRay(const std::vector<Vector3> & points, const RigidPose & pose, const std::vector<RadiographView> & views)
-{
-  double least = 1.0;
-  for (const RadiographView & view : views)
-  {
-    const LandmarkProjection projection(view.view);
-    Eigen::AlignedBox2d      box;
-    Vector2                  place;
-    for (const Vector3 & x : points)
-    {
-      if (projection.Project(pose.Apply(x), place))
-      {
-        box.extend(place);
-      }
-    }
-    const double side = std::max(view.view.size[0] * view.view.spacing[0], view.view.size[1] * view.view.spacing[1]);
-    least = box.isEmpty() ? least : std::min(least, box.sizes().maxCoeff() / side);
-  }
-  return least;
-}
-
-/** From SearchPixels on, or from more where a model takes up little of an X-ray: what counts is how fine it shows the
- * model. On 96 pixels, a hip bone that took up a third of them was called `ok` 2 mm and 3 degrees from its place. */
+/** On the coarsest level first, on the finest last. */
 std::vector<Resolution>
-MakeResolutions(const RigidRadiographParameters & parameters, std::size_t levels, double share)
+MakeResolutions(const std::vector<int> & pixels, std::size_t levels)
 {
-  constexpr double enough = 0.6; // of the X-ray
-  const auto       wanted =
-    std::lround(std::min<double>(parameters.pixels, parameters.searchPixels * std::max(1.0, enough / share)));
   std::vector<Resolution> resolutions;
-  for (long pixels = wanted; pixels < parameters.pixels; pixels *= 2)
+  for (const int side : pixels)
   {
-    resolutions.push_back({ static_cast<int>(pixels), 0 });
-  }
-  resolutions.push_back({ parameters.pixels, 0 });
-  for (std::size_t s = 0; s < resolutions.size(); ++s)
-  {
-    resolutions[s].level = levels - 1 - std::min(levels - 1, s);
+    resolutions.push_back({ side, levels - 1 - std::min(levels - 1, resolutions.size()) });
   }
   resolutions.back().level = 0;
   return resolutions;
@@ -202,7 +170,9 @@ public:
     , m_Views(views)
     , m_Observe(observe)
     , m_Initial(initial.About(CentreOf(levels.front())))
-    , m_Resolutions(MakeResolutions(parameters, levels.size(), ShareOfXRay(levels.back().points, m_Initial, views)))
+    , m_Resolutions(MakeResolutions(
+        ImageResolutions(parameters.searchPixels, parameters.pixels, levels.back().points, m_Initial, views),
+        levels.size()))
   {
     m_Radius = RadiusOf(levels.front().points, m_Initial.centre);
     m_PrincipalTurns = PrincipalTurns(levels.front().points, m_Initial.centre);
