@@ -16,7 +16,7 @@ namespace bone
 {
 /** The result as JSON: `converged`, `quality` ("ok", "suspect", "failed"), `distinctness`, `transform` (4 x 4, rows),
  * `centre` (mm), `covariance` (6 x 6; mm, radians, about the centre, the geometry's axes), `standardDeviations` (mm,
- * degrees), `cost`, `views` (the cost of each), `leastDistinctness`, `searches` and `beyondSearch`. */
+ * degrees), `cost`, `views` (the cost of each), `leastDistinctness`, `searches`, `beyondSearch` and `ambiguous`. */
 nlohmann::json
 ReportRegistration(const RigidRegistrationResult & result);
 

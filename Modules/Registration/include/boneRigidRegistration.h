@@ -41,7 +41,8 @@ struct RigidRegistrationResult
   RegistrationQuality         quality{ RegistrationQuality::Failed };
   /** How much the cost rises, on average over the six motions, where the model is moved by 8 mm, over the cost. A wrong
    * minimum is flat: with two views, on four bones, true poses have 0.41 and more, wrong ones 0.42 and less, most
-   * 0.28. One view does not always tell: wrong poses of a long bone have up to 1. */
+   * 0.28. One view does not always tell: wrong poses of a long bone have up to 1 (see
+   * ambiguous). */
   double distinctness{ 0.0 };
   /** The same of the one among twelve motions, each way along and about the model's principal axes, that raises the
    * cost least. A pose that edges of something else hold in place, such as those of a cropped CT, slides along them:
@@ -51,10 +52,11 @@ struct RigidRegistrationResult
   double leastDistinctness{ 0.0 };
   int    searches{ 0 };
   bool   beyondSearch{ false }; ///< the pose lies at the end of what was searched: `quality` is Suspect at best
+  bool   ambiguous{ false };    ///< from one view, another tilt fits about as well: `quality` is Suspect at best
 };
 
 /** \brief Sets cost, costs of the views, both distinctnesses and quality of the pose that `result` has (and of
- * beyondSearch), for a model whose radiographs are as in the last step of RegisterRigid. */
+ * beyondSearch and ambiguous), for a model whose radiographs are as in the last step of RegisterRigid. */
 void
 JudgePose(const MeshArrays &                  model,
           const std::vector<RadiographView> & views,

@@ -67,6 +67,8 @@ ResultTable(const nlohmann::json & report)
   AddRow(report, "/distinctness", "distinctness", table);
   AddRow(report, "/leastDistinctness", "least distinctness", table);
   AddRow(report, "/searches", "searches", table);
+  AddRow(report, "/beyondSearch", "at the end of what was searched", table);
+  AddRow(report, "/ambiguous", "another tilt fits about as well", table);
   AddRow(report, "/centre", "centre of the pose, x y z (mm)", table);
   AddRow(
     report, "/standardDeviations", "standard deviations of x y z (mm) and of the turns about them (degrees)", table);

@@ -205,6 +205,7 @@ ReportRegistration(const RigidRegistrationResult & result)
   report["leastDistinctness"] = result.leastDistinctness;
   report["searches"] = result.searches;
   report["beyondSearch"] = result.beyondSearch;
+  report["ambiguous"] = result.ambiguous;
   return report;
 }
 

@@ -9,8 +9,25 @@
 
 #include <stdexcept>
 
+#include <algorithm>
+
 namespace bone
 {
+namespace
+{
+/** Whether the pose lies beyond the translations that were to be searched, by more than two of its deviations. */
+bool
+IsBeyondSearch(const RigidRegistrationResult &   result,
+               const RigidPose &                 initial,
+               const RigidRadiographParameters & parameters)
+{
+  const Vector3 step = result.pose.translation - initial.About(result.pose.centre).translation;
+  const Vector3 deviation = result.covariance.diagonal().head<3>().cwiseSqrt();
+  return parameters.searchTranslation > 0.0 &&
+         (step.cwiseAbs() - 2.0 * deviation).maxCoeff() > 1.02 * parameters.searchTranslation;
+}
+} // namespace
+
 RigidBundleResult
 RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodies,
                     const std::vector<RadiographView> &                    views,
@@ -55,6 +72,15 @@ RegisterRigidBodies(const std::vector<std::vector<MeshArrays>> &           bodie
       RigidBundleResult alone = result;
       AdjustRigidBundle(models, { b }, views, exact, execution.Silent(), observe, alone);
       result.bodies[b] = alone.bodies[b];
+    }
+  }
+  for (RigidRegistrationResult & body : result.bodies)
+  {
+    // The search leaves out the depth of one view.
+    if (views.size() == 1 && IsBeyondSearch(body, initial, parameters))
+    {
+      body.beyondSearch = true;
+      body.quality = std::max(body.quality, RegistrationQuality::Suspect);
     }
   }
   execution.Report(1.0);

@@ -98,4 +98,65 @@ TEST(RigidSearch, AClearPoseIsLeftToTheLastAdjustment)
   narrow.searchTranslation = 4.5;
   EXPECT_EQ(Search(views, narrow).quality, RegistrationQuality::Suspect);
 }
+/** A bent rod about (10, 20, 30), 100 mm long, along z; `bend` mm towards y at its ends. */
+MeshArrays
+Rod(double bend)
+{
+  MeshArrays rod = BallMesh(10, Vector3::Zero(), 1.0);
+  for (Vector3 & p : rod.points)
+  {
+    p = Start.centre + Vector3(7 * p.x(), 9 * p.y() + bend * p.z() * p.z(), 50 * p.z());
+  }
+  rod.maximumDegree = 0;
+  rod.degree.assign(rod.tetrahedra.size(), 0);
+  rod.coefficients.assign(rod.tetrahedra.size(), 600.0);
+  return rod;
+}
+
+/** Of an X-ray along y of the rod, tilted by 10 degrees, with noise. */
+RigidRegistrationResult
+SearchTilted(double bend, const RigidPose & start, const RigidRadiographParameters & parameters)
+{
+  auto                            xray = XRayOf(Rod(bend), ViewOf({ 0, 1, 0 }), PoseOf(0, 0, 0, 0.175, 0, 0));
+  std::mt19937                    random(3);
+  std::normal_distribution<float> normal(0.0f, 0.05f * *std::max_element(xray.values.begin(), xray.values.end()));
+  for (float & x : xray.values)
+  {
+    x += normal(random);
+  }
+  return SearchRigid({ Rod(bend) }, { xray }, start, parameters, Execution(), {});
+}
+
+TEST(RigidSearch, FromOneViewOtherTiltsAreTried)
+{
+  RigidRadiographParameters refined = Parameters(1);
+  refined.searchTranslation = refined.searchRotation = 0.0;
+  const RigidPose truth = PoseOf(0, 0, 0, 0.175, 0, 0), mirrored = PoseOf(0, 0, 0, -0.175, 0, 0);
+  const auto      result = SearchTilted(12.0, mirrored, refined);
+  EXPECT_LT((result.pose.rotation.transpose() * truth.rotation - Eigen::Matrix3d::Identity()).norm(), 0.05);
+  EXPECT_EQ(result.quality, RegistrationQuality::Ok);
+  EXPECT_FALSE(result.ambiguous);
+}
+
+TEST(RigidSearch, APoseOfOneViewIsAmbiguousWhereAnotherTiltFitsAsWell)
+{
+  const auto straight = SearchTilted(0.0, Start, Parameters(1));
+  EXPECT_TRUE(straight.ambiguous);
+  EXPECT_EQ(straight.quality, RegistrationQuality::Suspect) << straight.distinctness;
+}
+
+TEST(RigidSearch, FromOneViewTheDepthIsNotJudged)
+{
+  RigidRadiographParameters parameters = Parameters(2);
+  parameters.searchTranslation = 10.0;
+  for (const double depth : { 9.9, 11.0 })
+  {
+    const auto xray = XRayOf(Body(12), ViewOf({ 0, 1, 0 }), PoseOf(1, depth, -2, 0.1, 0.05, -0.1));
+    const auto result = SearchRigid({ Body(12), Body(8) }, { xray }, Start, parameters, Execution(), {});
+    EXPECT_FALSE(result.beyondSearch) << depth;
+    EXPECT_EQ(result.quality, RegistrationQuality::Ok) << depth;
+  }
+  const auto aside = XRayOf(Body(12), ViewOf({ 0, 1, 0 }), PoseOf(11, 1, -2, 0.1, 0.05, -0.1));
+  EXPECT_TRUE(SearchRigid({ Body(12), Body(8) }, { aside }, Start, parameters, Execution(), {}).beyondSearch);
+}
 } // namespace RigidSearchTests
