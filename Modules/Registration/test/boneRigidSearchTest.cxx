@@ -4,6 +4,7 @@
 #include "boneRigidSearch.h"
 
 #include "boneRegistrationTestBody.h"
+#include "boneRigidRegistration.h"
 
 #include <gtest/gtest.h>
 
@@ -113,11 +114,11 @@ Rod(double bend)
   return rod;
 }
 
-/** Of an X-ray along y of the rod, tilted by 10 degrees, with noise. */
+/** Of an X-ray along y of the rod in this pose, with noise. */
 RigidRegistrationResult
-SearchTilted(double bend, const RigidPose & start, const RigidRadiographParameters & parameters)
+SearchRod(double bend, const RigidPose & truth, const RigidPose & start, const RigidRadiographParameters & parameters)
 {
-  auto                            xray = XRayOf(Rod(bend), ViewOf({ 0, 1, 0 }), PoseOf(0, 0, 0, 0.175, 0, 0));
+  auto                            xray = XRayOf(Rod(bend), ViewOf({ 0, 1, 0 }), truth);
   std::mt19937                    random(3);
   std::normal_distribution<float> normal(0.0f, 0.05f * *std::max_element(xray.values.begin(), xray.values.end()));
   for (float & x : xray.values)
@@ -131,8 +132,8 @@ TEST(RigidSearch, FromOneViewOtherTiltsAreTried)
 {
   RigidRadiographParameters refined = Parameters(1);
   refined.searchTranslation = refined.searchRotation = 0.0;
-  const RigidPose truth = PoseOf(0, 0, 0, 0.175, 0, 0), mirrored = PoseOf(0, 0, 0, -0.175, 0, 0);
-  const auto      result = SearchTilted(12.0, mirrored, refined);
+  const RigidPose truth = PoseOf(0, 0, 0, 0.35, 0, 0), mirrored = PoseOf(0, 0, 0, -0.35, 0, 0);
+  const auto      result = SearchRod(6.0, truth, mirrored, refined);
   EXPECT_LT((result.pose.rotation.transpose() * truth.rotation - Eigen::Matrix3d::Identity()).norm(), 0.05);
   EXPECT_EQ(result.quality, RegistrationQuality::Ok);
   EXPECT_FALSE(result.ambiguous);
@@ -140,23 +141,33 @@ TEST(RigidSearch, FromOneViewOtherTiltsAreTried)
 
 TEST(RigidSearch, APoseOfOneViewIsAmbiguousWhereAnotherTiltFitsAsWell)
 {
-  const auto straight = SearchTilted(0.0, Start, Parameters(1));
+  const auto straight = SearchRod(0.0, PoseOf(0, 0, 0, 0.175, 0, 0), Start, Parameters(1));
   EXPECT_TRUE(straight.ambiguous);
   EXPECT_EQ(straight.quality, RegistrationQuality::Suspect) << straight.distinctness;
 }
 
-TEST(RigidSearch, FromOneViewTheDepthIsNotJudged)
+TEST(RigidSearch, TheSearchOfOneViewLeavesItsDepthToTheLastStep)
 {
   RigidRadiographParameters parameters = Parameters(2);
   parameters.searchTranslation = 10.0;
   for (const double depth : { 9.9, 11.0 })
   {
     const auto xray = XRayOf(Body(12), ViewOf({ 0, 1, 0 }), PoseOf(1, depth, -2, 0.1, 0.05, -0.1));
-    const auto result = SearchRigid({ Body(12), Body(8) }, { xray }, Start, parameters, Execution(), {});
+    const auto result = SearchRigid({ Body(12) }, { xray }, Start, parameters, Execution(), {});
     EXPECT_FALSE(result.beyondSearch) << depth;
     EXPECT_EQ(result.quality, RegistrationQuality::Ok) << depth;
   }
+  // It is when it is known.
+  const auto registered = [&](double depth) {
+    const auto xray = XRayOf(Body(12), ViewOf({ 0, 1, 0 }), PoseOf(1, depth, -2, 0.1, 0.05, -0.1));
+    return RegisterRigid({ Body(12) }, { xray }, Start, parameters, Execution(), {});
+  };
+  const auto within = registered(9.9), beyond = registered(12.0);
+  EXPECT_EQ(within.quality, RegistrationQuality::Ok);
+  EXPECT_FALSE(within.beyondSearch);
+  EXPECT_EQ(beyond.quality, RegistrationQuality::Suspect);
+  EXPECT_TRUE(beyond.beyondSearch);
   const auto aside = XRayOf(Body(12), ViewOf({ 0, 1, 0 }), PoseOf(11, 1, -2, 0.1, 0.05, -0.1));
-  EXPECT_TRUE(SearchRigid({ Body(12), Body(8) }, { aside }, Start, parameters, Execution(), {}).beyondSearch);
+  EXPECT_TRUE(SearchRigid({ Body(12) }, { aside }, Start, parameters, Execution(), {}).beyondSearch);
 }
 } // namespace RigidSearchTests
