@@ -24,7 +24,7 @@ IsBeyondSearch(const RigidRegistrationResult &   result,
   const Vector3 step = result.pose.translation - initial.About(result.pose.centre).translation;
   const Vector3 deviation = result.covariance.diagonal().head<3>().cwiseSqrt();
   return parameters.searchTranslation > 0.0 &&
-         (step.cwiseAbs() - 2.0 * deviation).maxCoeff() > 1.02 * parameters.searchTranslation;
+         (step.cwiseAbs() - 2.0 * deviation).maxCoeff() > BeyondTranslations * parameters.searchTranslation;
 }
 } // namespace
 

@@ -304,8 +304,7 @@ private:
   bool
   IsBeyondSearch(const RigidPose & pose) const
   {
-    constexpr double within = 1.02; // of the translations that are to be searched
-    constexpr double end = 0.98;    // of the box's turns: steps towards its end are cut short
+    constexpr double end = 0.98; // of the box's turns: steps towards its end are cut short
     Vector6          step = this->StepInBox(pose);
     if (m_Views.size() == 1)
     {
@@ -315,7 +314,7 @@ private:
     }
     step = step.cwiseAbs();
     const auto isBeyond = [&](Eigen::Index k) {
-      return m_Box[k] > 0.0 && step[k] > (k < 3 ? within * m_P.searchTranslation : end * m_Box[k]);
+      return m_Box[k] > 0.0 && step[k] > (k < 3 ? BeyondTranslations * m_P.searchTranslation : end * m_Box[k]);
     };
     return m_IsSearched && (isBeyond(0) || isBeyond(1) || isBeyond(2) || isBeyond(3) || isBeyond(4) || isBeyond(5));
   }
@@ -362,6 +361,13 @@ private:
     }
   }
 
+  /** Of the angle that the model's longest axis has with the view's plane. */
+  double
+  CosineOfTilt(const RigidPose & pose) const
+  {
+    return BeamOf(m_Views.front().view).cross(pose.rotation * m_PrincipalTurns.col(2).normalized()).norm();
+  }
+
   /** The pose turned until the model's longest axis has this angle (radians) with the view's plane, and moved along its
    * ray to where it looks as long as before. */
   RigidPose
@@ -385,6 +391,11 @@ private:
   void
   CompareTilts(const Execution & execution, RigidRegistrationResult & best) const
   {
+    constexpr double endOn = 0.5; // cosine of the axis' angle with the view's plane: below, it hardly shows its length
+    if (this->CosineOfTilt(best.pose) < endOn)
+    {
+      return;
+    }
     constexpr double                     step = 8.0 * 0.017453292519943295; // radians
     constexpr double                     same = 8.0;                        // mm, two pixels of the coarsest images
     constexpr double                     asWell = 1.13;                     // of the cost

@@ -8,6 +8,9 @@
 
 namespace bone
 {
+/** Of the translations that are to be searched: farther poses are beyond them. */
+constexpr double BeyondTranslations = 1.02;
+
 /** \brief The first part of RegisterRigid, for one body whose levels have faded where they are cut: searches, each
  * refined and judged, until a pose is Ok. Without covariance. */
 RigidRegistrationResult

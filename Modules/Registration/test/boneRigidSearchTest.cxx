@@ -99,6 +99,7 @@ TEST(RigidSearch, AClearPoseIsLeftToTheLastAdjustment)
   narrow.searchTranslation = 4.5;
   EXPECT_EQ(Search(views, narrow).quality, RegistrationQuality::Suspect);
 }
+
 /** A bent rod about (10, 20, 30), 100 mm long, along z; `bend` mm towards y at its ends. */
 MeshArrays
 Rod(double bend)
@@ -144,6 +145,16 @@ TEST(RigidSearch, APoseOfOneViewIsAmbiguousWhereAnotherTiltFitsAsWell)
   const auto straight = SearchRod(0.0, PoseOf(0, 0, 0, 0.175, 0, 0), Start, Parameters(1));
   EXPECT_TRUE(straight.ambiguous);
   EXPECT_EQ(straight.quality, RegistrationQuality::Suspect) << straight.distinctness;
+}
+
+TEST(RigidSearch, ABoneSeenAlongItsLongestAxisHasNoOtherTilts)
+{
+  RigidRadiographParameters refined = Parameters(1);
+  refined.searchTranslation = refined.searchRotation = 0.0;
+  const RigidPose endOn = PoseOf(0, 0, 0, 0.5 * std::acos(-1.0), 0, 0);
+  const auto      result = SearchRod(0.0, endOn, endOn, refined);
+  EXPECT_FALSE(result.ambiguous);
+  EXPECT_TRUE(result.pose.translation.allFinite());
 }
 
 TEST(RigidSearch, TheSearchOfOneViewLeavesItsDepthToTheLastStep)
