@@ -31,15 +31,19 @@ struct PatchSums
     , withModel(Eigen::MatrixXd::Zero(channels, n))
   {}
 
+  /** The sums over #n patches of two by two blocks, from column `to` on: `from` is the first block of the first one,
+   * and the blocks below are `inRow` columns further. */
   void
-  Add(Eigen::Index to, const PatchSums & other, Eigen::Index from)
+  SetPatches(Eigen::Index to, Eigen::Index n, const PatchSums & blocks, Eigen::Index from, Eigen::Index inRow)
   {
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      sum[axis].col(to) += other.sum[axis].col(from);
-    }
-    withFixed.col(to) += other.withFixed.col(from);
-    withModel.col(to) += other.withModel.col(from);
+    const auto add = [=](Eigen::MatrixXd & patches, const Eigen::MatrixXd & of) {
+      patches.middleCols(to, n) = of.middleCols(from, n) + of.middleCols(from + 1, n) + of.middleCols(from + inRow, n) +
+                                  of.middleCols(from + inRow + 1, n);
+    };
+    add(sum[0], blocks.sum[0]);
+    add(sum[1], blocks.sum[1]);
+    add(withFixed, blocks.withFixed);
+    add(withModel, blocks.withModel);
   }
 };
 
@@ -209,33 +213,42 @@ struct PatchGradientCorrelation::Data
         to = std::transform(
           from, from + box.Columns(), &this->Weights()[this->PixelAt(box.first[0], r)], to, std::multiplies<>());
       }
-      for (Eigen::Index k = 0; k < count; ++k)
+      for (int r = box.first[1]; r < box.end[1]; r += block)
       {
-        this->AddProducts(channels, axis, model, k, ofBlocks);
+        for (Eigen::Index k = 0; k < count; ++k)
+        {
+          this->AddProducts(channels, axis, model, r, k, ofBlocks);
+        }
       }
     }
-    PatchSums sums(count, this->PatchesOf(box));
-    for (Eigen::Index p = 0; p < this->PatchesOf(box); ++p)
+    PatchSums          sums(count, this->PatchesOf(box));
+    const Eigen::Index inRow = this->BlocksOf(box, 0);
+    for (Eigen::Index to = 0, from = 0; to < this->PatchesOf(box); to += inRow - 1, from += inRow)
     {
-      for (int i = 0; i < 4; ++i)
+      sums.SetPatches(to, inRow - 1, ofBlocks, from, inRow);
+      const Eigen::Index at = this->IndexOf(this->PlaceOf(box, to));
+      for (int axis = 0; axis < 2; ++axis)
       {
-        sums.Add(p, ofBlocks, this->BlockOf(box, p, i % 2, i / 2));
-      }
-      const Eigen::Index at = this->IndexOf(this->PlaceOf(box, p));
-      for (int axis = 0; axis < 2 && patchWeights[at] > 0.0; ++axis)
-      {
-        const auto sum = sums.sum[axis].col(p);
-        sums.withFixed.col(p) -= patchSums[axis][at] / patchWeights[at] * sum;
-        sums.withModel.col(p) -= sum[0] / patchWeights[at] * sum;
+        const auto            sum = sums.sum[axis].middleCols(to, inRow - 1);
+        const Eigen::ArrayXd  weights = patchWeights.segment(at, inRow - 1);
+        const auto            isCounted = weights > 0.0;
+        const Eigen::VectorXd ofFixed = isCounted.select(patchSums[axis].segment(at, inRow - 1).array() / weights, 0.0);
+        const Eigen::VectorXd ofModel = isCounted.select(sum.row(0).transpose().array() / weights, 0.0);
+        sums.withFixed.middleCols(to, inRow - 1) -= sum * ofFixed.asDiagonal();
+        sums.withModel.middleCols(to, inRow - 1) -= sum * ofModel.asDiagonal();
       }
     }
     return sums;
   }
 
-  /** Adds the products of a component of channel k to the sums of blocks, a row of blocks at a time. */
+  /** Adds the products of a component of channel k to the sums of the row of blocks that begins with row r. */
   void
-  AddProducts(const Channels & channels, int axis, const std::vector<float> & model, Eigen::Index k, PatchSums & to)
-    const
+  AddProducts(const Channels &           channels,
+              int                        axis,
+              const std::vector<float> & model,
+              int                        r,
+              Eigen::Index               k,
+              PatchSums &                to) const
   {
     const PixelBox &   box = channels.box;
     const int          columns = box.Columns();
@@ -244,29 +257,25 @@ struct PatchGradientCorrelation::Data
     float * const      s = sums.data();
     float * const      f = s + columns;
     float * const      g = f + columns;
-    for (int r = box.first[1]; r < box.end[1];)
+    const Eigen::Index row = static_cast<Eigen::Index>((r - box.first[1]) / block) * this->BlocksOf(box, 0);
+    for (const int end = std::min(r + block, box.end[1]); r < end; ++r)
     {
-      std::fill(sums.begin(), sums.end(), 0.0f);
-      const Eigen::Index row = static_cast<Eigen::Index>((r - box.first[1]) / block) * this->BlocksOf(box, 0);
-      for (const int end = std::min(r + block, box.end[1]); r < end; ++r)
-      {
-        const std::size_t at = static_cast<std::size_t>(r - box.first[1]) * static_cast<std::size_t>(columns);
-        AddRow(columns,
-               channel + at,
-               &this->Weights()[this->PixelAt(box.first[0], r)],
-               &weighted[axis][this->PixelAt(box.first[0], r)],
-               &model[at],
-               s,
-               f,
-               g);
-      }
-      for (Eigen::Index b = row, c = 0; c < columns; ++b, c += block)
-      {
-        const Eigen::Index n = std::min<Eigen::Index>(block, columns - c);
-        to.sum[axis](k, b) += std::accumulate(s + c, s + c + n, 0.0);
-        to.withFixed(k, b) += std::accumulate(f + c, f + c + n, 0.0);
-        to.withModel(k, b) += std::accumulate(g + c, g + c + n, 0.0);
-      }
+      const std::size_t at = static_cast<std::size_t>(r - box.first[1]) * static_cast<std::size_t>(columns);
+      AddRow(columns,
+             channel + at,
+             &this->Weights()[this->PixelAt(box.first[0], r)],
+             &weighted[axis][this->PixelAt(box.first[0], r)],
+             &model[at],
+             s,
+             f,
+             g);
+    }
+    for (Eigen::Index b = row, c = 0; c < columns; ++b, c += block)
+    {
+      const Eigen::Index n = std::min<Eigen::Index>(block, columns - c);
+      to.sum[axis](k, b) += std::accumulate(s + c, s + c + n, 0.0);
+      to.withFixed(k, b) += std::accumulate(f + c, f + c + n, 0.0);
+      to.withModel(k, b) += std::accumulate(g + c, g + c + n, 0.0);
     }
   }
 
@@ -280,12 +289,12 @@ struct PatchGradientCorrelation::Data
          float *       f,
          float *       g)
   {
-    for (int c = 0; c < n; ++c)
-    {
-      s[c] += weights[c] * channel[c];
-      f[c] += fixed[c] * channel[c];
-      g[c] += model[c] * channel[c];
-    }
+    using Row = Eigen::Map<Eigen::ArrayXf>;
+    using ConstRow = Eigen::Map<const Eigen::ArrayXf>;
+    const ConstRow values(channel, n);
+    Row(s, n) += ConstRow(weights, n) * values;
+    Row(f, n) += ConstRow(fixed, n) * values;
+    Row(g, n) += ConstRow(model, n) * values;
   }
 
   /** Adds the patches' shares in clusters of two by two patches' width. */

@@ -178,6 +178,23 @@ TEST(DeformableRadiographRegistration, FindsPoseShapeAndDensity)
   EXPECT_LT((Vector3(moved[0], moved[1], moved[2]) - result.pose.Apply({ 1, 2, 3 })).norm(), 1e-9);
 }
 
+TEST(DeformableRadiographRegistration, SearchesAgainWhereASearchLedAstray)
+{
+  const auto truth = Moved(TrueBone().points, Truth);
+  for (int seed = 4; seed <= 6; ++seed)
+  {
+    auto registration = MakeRegistration();
+    auto parameters = Parameters();
+    parameters.searchTranslation = 30.0;
+    parameters.searchRotation = 50.0;
+    parameters.seed = seed;
+    registration->SetParameters(parameters);
+    registration->SetInitialTransform(PoseOf(20, -20, 20, 0.6, -0.5, 0.5).ToTransform());
+    EXPECT_EQ(ErrorOf(registration), "");
+    EXPECT_LT(MeanDistance(registration->GetResult().mesh.points, truth), 0.2) << "seed " << seed;
+  }
+}
+
 TEST(DeformableRadiographRegistration, MovesWithViewsAndStart)
 {
   auto straight = MakeRegistration();
