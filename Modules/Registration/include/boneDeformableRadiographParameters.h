@@ -16,7 +16,7 @@ namespace bone
     "How far the start may be turned about each axis") \
   value(int, searchModes, SearchModes, 3, ParameterRange::Between(0, 20), "", "search-modes", \
     "Modes of shape that the search varies with the pose") \
-  value(int, population, Population, 75, ParameterRange::Between(4, 10000), "", "population", \
+  value(int, population, Population, 50, ParameterRange::Between(4, 10000), "", "population", \
     "Bones that the search tries at a time") \
   value(double, translationDeviation, TranslationDeviation, 0.0, ParameterRange::LengthOrZero(), "mm", \
     "translation-deviation", \
