@@ -7,24 +7,18 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 CMake/install-packages.sh || exit 1
 
-failed=0
-total=0
 status=0
+results=()
 
 # run PRESET CTEST-OPTIONS...: builds the preset and runs its tests.
 run() {
-  local preset=$1 log bad all
+  local preset=$1 result=$PWD/build/$1/tests.xml
   shift
-  log=build/$preset/Testing/ctest.log
   cmake --preset "$preset" > /dev/null || exit 1
   cmake --build --preset "$preset" || exit 1
-  mkdir -p "$(dirname "$log")"
-  ctest --preset "$preset" "$@" | tee "$log"
-  [ "${PIPESTATUS[0]}" -eq 0 ] || status=1
-  # "98% tests passed, 2 tests failed out of 100"
-  read -r bad all < <(sed -n 's/.*tests passed, \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log" | tail -n 1)
-  failed=$((failed + ${bad:-1}))
-  total=$((total + ${all:-1}))
+  rm -f "$result"
+  ctest --preset "$preset" --output-junit "$result" "$@" || status=1
+  results+=("$result")
 }
 
 run test -j2 "$@"
@@ -39,6 +33,5 @@ else
   run sanitize -j2
 fi
 
-echo
-echo "$((100 * (total - failed) / total))% tests passed, $failed tests failed out of $total"
+Testing/summary.py "${results[@]}" || status=1
 exit $status
