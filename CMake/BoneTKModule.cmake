@@ -36,6 +36,19 @@ function(bonetk_test_settings target)
   bonetk_unity_build(${target} 12)
 endfunction()
 
+# Registers a test program's tests in as many parts as it has sources, not one by one: under the sanitizers a process takes
+# longer to load its libraries than most tests to run.
+function(bonetk_shard_tests target name)
+  get_target_property(sources ${target} SOURCES)
+  list(LENGTH sources shards)
+  math(EXPR last "${shards} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${name}.part_${shard} COMMAND ${target} --gtest_brief=1)
+    set_tests_properties(${name}.part_${shard} PROPERTIES LABELS unit TIMEOUT 600
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()
+
 # Refuses an unnamed namespace in a test: others that are compiled with it would call what it holds, unseen.
 function(bonetk_check_names)
   foreach(test IN LISTS ARGN)
@@ -125,7 +138,11 @@ function(bonetk_module name)
     # Kernels that are not installed are tested too.
     target_include_directories(${target}Tests PRIVATE ${concerns})
     target_link_libraries(${target}Tests PRIVATE ${target} GTest::gtest_main GTest::gmock)
-    gtest_discover_tests(${target}Tests TEST_PREFIX "${name}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
+    if(BONETK_SANITIZE)
+      bonetk_shard_tests(${target}Tests ${name})
+    else()
+      gtest_discover_tests(${target}Tests TEST_PREFIX "${name}." PROPERTIES LABELS unit DISCOVERY_TIMEOUT 60)
+    endif()
   endif()
   file(GLOB benchmarks CONFIGURE_DEPENDS test/*Benchmark.cxx)
   if(BONETK_BUILD_BENCHMARKS AND benchmarks)

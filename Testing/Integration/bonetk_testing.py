@@ -83,7 +83,7 @@ class TestCase(unittest.TestCase):
         self.assertEqual(got, code, f"bonetk {arguments}: {out}{err}")
         self.assertTrue(1 <= len(err.splitlines()) <= lines, f"bonetk {arguments}: {err}")
         self.assertTrue(err.splitlines()[-1].startswith("bonetk"), err)
-        self.assertNotIn("0x", err)
+        self.assertNotRegex(err, r"\b0x[0-9a-f]{4}")  # an address; names of temporary folders may hold 0x
         self.assertNotIn(".cxx", err)
         self.assertNotIn(".hxx", err)
         self.assertIn(says, err)
