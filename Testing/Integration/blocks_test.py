@@ -169,7 +169,7 @@ class Blocks(unittest.TestCase):
                 self.assertAlmostEqual(value, float(i == j), delta=0.02 if j < 3 else 0.5)
         mass = [{measure["name"]: measure["value"] for measure in json.loads((folder / name).read_text())["measures"]}["model.mass"]
                 for name in ("found_measures.json", "true_measures.json")]
-        self.assertAlmostEqual(mass[0] / mass[1], 1.0, delta=0.05)
+        self.assertAlmostEqual(mass[0] / mass[1], 1.0, delta=0.03)
 
     def test_parts_of_programs(self):
         """All parts of C++ programs, as one program that calls none of them."""
