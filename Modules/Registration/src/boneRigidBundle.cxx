@@ -8,6 +8,7 @@
 #include "boneMetricSum.h"
 #include "boneOutwardMove.h"
 #include "bonePatchGradientCorrelation.h"
+#include "boneRigidSearch.h"
 
 #include <Eigen/Cholesky>
 
@@ -29,6 +30,13 @@ struct BundleState
   std::vector<RigidPose> poses;
   std::vector<double>    outward;
   std::vector<RigidPose> motions;
+};
+
+/** Bodies with their surfaces where a state has them, made ready for radiographs. */
+struct ReadyBodies
+{
+  std::vector<std::vector<Vector3>>                   points;
+  std::vector<std::unique_ptr<const ProjectionModel>> models; ///< of these points
 };
 
 /** What the motion's step moves a posed body by, as a step of the body's pose. */
@@ -83,9 +91,25 @@ public:
     }
   }
 
+  ReadyBodies
+  MakeReady(const BundleState & state, const Execution & execution) const
+  {
+    ReadyBodies ready;
+    for (std::size_t b = 0; b < m_Bodies.size(); ++b)
+    {
+      ready.points.push_back(this->PointsOf(state, b));
+    }
+    for (std::size_t b = 0; b < m_Bodies.size(); ++b)
+    {
+      ready.models.push_back(std::make_unique<const ProjectionModel>(
+        ready.points[b], m_Bodies[b], MeshRadiographParameters{}, execution.Silent()));
+    }
+    return ready;
+  }
+
   /** The cost alone. */
   double
-  EvaluateCost(const BundleState & state, const Execution & execution) const
+  EvaluateCost(const BundleState & state, const ReadyBodies & ready, const Execution & execution) const
   {
     std::vector<std::vector<float>> images;
     for (const RadiographView & view : m_Views)
@@ -102,7 +126,7 @@ public:
         seen.push_back(this->Seen(state, v, b));
         pointers.push_back(own.emplace_back(images[v].size()).data());
       }
-      ProjectMesh(this->PointsOf(state, b), m_Bodies[b], seen, {}, execution, pointers);
+      ProjectMesh(*ready.models[b], seen, execution, pointers);
       for (std::size_t v = 0; v < m_Views.size(); ++v)
       {
         std::transform(own[v].begin(), own[v].end(), images[v].begin(), images[v].begin(), std::plus<float>());
@@ -114,12 +138,12 @@ public:
   }
 
   MetricSum
-  Evaluate(const BundleState & state, const Execution & execution) const
+  Evaluate(const BundleState & state, const ReadyBodies & ready, const Execution & execution) const
   {
     std::vector<std::vector<std::vector<float>>> images;
     for (std::size_t v = 0; v < m_Views.size(); ++v)
     {
-      images.push_back(this->Project(state, v, execution));
+      images.push_back(this->Project(state, ready, v, execution));
     }
     std::vector<MetricValue> values(m_Views.size());
     execution.For(values.size(), [&](std::size_t v) {
@@ -150,7 +174,7 @@ public:
           const Execution &                                      execution,
           const std::function<void(const RigidPose &, double)> & observe) const
   {
-    constexpr double least = 0.1; // of the logarithm of the posterior
+    constexpr double least = 0.5; // of the logarithm of the posterior
     Damping          damping;
     bool             isDone = false;
     for (int i = 0; i < m_P.iterations && !isDone; ++i)
@@ -160,13 +184,14 @@ public:
       const Eigen::VectorXd gradient = precision * value.gradient + m_Prior.cwiseProduct(this->FromPrior(at));
       hessian.diagonal() += m_Prior;
       const double      floor = 1e-12 * hessian.diagonal().maxCoeff();
-      const BundleState next = this->Moved(at, -damping.Damp(hessian, floor).ldlt().solve(gradient));
-      const double      there = this->EvaluateCost(next, execution.Silent());
+      const BundleState next = this->Moved(at, -LongerSteps * damping.Damp(hessian, floor).ldlt().solve(gradient));
+      const ReadyBodies ready = this->MakeReady(next, execution);
+      const double      there = this->EvaluateCost(next, ready, execution.Silent());
       const double      gain = precision * (value.cost - there) + this->PriorCost(at) - this->PriorCost(next);
       if (gain > 0.0)
       {
         at = next;
-        value = this->Evaluate(at, execution.Silent());
+        value = this->Evaluate(at, ready, execution.Silent());
       }
       damping.Tell(gain > 0.0);
       isDone = damping.IsStuck() || (gain > 0.0 && gain < least);
@@ -283,7 +308,7 @@ private:
 
   /** The radiograph of all bodies in one view, then its derivatives by the bodies' parameters. */
   std::vector<std::vector<float>>
-  Project(const BundleState & state, std::size_t view, const Execution & execution) const
+  Project(const BundleState & state, const ReadyBodies & ready, std::size_t view, const Execution & execution) const
   {
     const std::size_t               pixels = m_Views[view].GetNumberOfPixels();
     std::vector<std::vector<float>> images(1 + OfBody * m_Bodies.size(), std::vector<float>(pixels, 0.0f));
@@ -299,8 +324,7 @@ private:
       {
         pointers.push_back(images[1 + OfBody * b + k].data());
       }
-      ProjectMeshDerivatives(
-        this->PointsOf(state, b), m_Bodies[b], this->Seen(state, view, b), {}, modes, execution, pointers);
+      ProjectMeshDerivatives(*ready.models[b], this->Seen(state, view, b), modes, execution, pointers);
       std::transform(own.begin(), own.end(), images[0].begin(), images[0].begin(), std::plus<float>());
     }
     return images;
@@ -352,7 +376,7 @@ AdjustRigidBundle(const std::vector<MeshArrays> &                        models,
     state.motions.push_back(view.motion);
   }
   const RigidBundle           bundle(bodies, views, parameters);
-  MetricSum                   value = bundle.Evaluate(state, execution.Silent());
+  MetricSum                   value = bundle.Evaluate(state, bundle.MakeReady(state, execution), execution.Silent());
   const bool                  converged = bundle.Descend(state, value, execution, observe);
   const Eigen::MatrixXd       covariance = bundle.MakeCovariance(value);
   std::vector<RadiographView> moved = views;
@@ -373,7 +397,13 @@ AdjustRigidBundle(const std::vector<MeshArrays> &                        models,
     body.pose = state.poses[i];
     body.converged = converged;
     body.covariance = TurnedTo(body.pose, covariance.block<6, 6>(at, at));
-    const RegistrationQuality searched = body.quality; // by more than distinctness
+    // The search judges by more than distinctness, and the adjustment moves the pose by tenths of a millimetre.
+    if (body.quality == RegistrationQuality::Ok)
+    {
+      SetCosts(models[which[i]], moved, parameters, execution, body);
+      continue;
+    }
+    const RegistrationQuality searched = body.quality;
     JudgePose(models[which[i]], moved, parameters, execution, body);
     body.quality = std::min(body.quality, searched);
   }

@@ -216,7 +216,7 @@ public:
       const Execution         part = execution.Part(static_cast<double>(done) / searches, (done + 1.0) / searches);
       RigidRegistrationResult result;
       result.pose = m_IsSearched ? this->Search(done, part.Part(0.0, 0.7)) : m_Initial;
-      this->Approach(part.Part(0.7, 0.85), result);
+      this->Approach(LittleBeforeFinerImages, part.Part(0.7, 0.85), result);
       if (this->IsHopeless(result))
       {
         bestHopeless = result.cost < bestHopeless.cost ? result : bestHopeless;
@@ -323,7 +323,7 @@ private:
   Search(int search, const Execution & execution) const
   {
     constexpr int    generations = 100;
-    constexpr double narrow = 0.03; // of the box
+    constexpr double narrow = 0.08; // of the box
     const auto       model = MakeModel(m_Means, execution);
     const auto       cost = MakeCost(m_P, m_Views, m_Resolutions.front().pixels, *model);
     const auto       seed = static_cast<std::uint64_t>(m_P.seed) * 1000 + static_cast<std::uint64_t>(search);
@@ -346,13 +346,13 @@ private:
 
   /** Refines the pose on all resolutions but the last, and judges it by the one before. */
   void
-  Approach(const Execution & execution, RigidRegistrationResult & result) const
+  Approach(double little, const Execution & execution, RigidRegistrationResult & result) const
   {
     const std::size_t before = m_Costs.size() - 1;
     for (std::size_t s = 0; s < before; ++s)
     {
       const auto share = 1.0 / static_cast<double>(before);
-      this->Descend(*m_Costs[s], result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
+      this->Descend(*m_Costs[s], little, result, execution.Part(share * static_cast<double>(s), share * (s + 1.0)));
     }
     result.beyondSearch = this->IsBeyondSearch(result.pose);
     if (before > 0)
@@ -400,15 +400,15 @@ private:
     constexpr double                     same = 8.0;                        // mm, two pixels of the coarsest images
     constexpr double                     asWell = 1.13;                     // of the cost
     std::vector<RigidRegistrationResult> poses(1, best);
-    this->Descend(*m_Costs[std::max<std::size_t>(2, m_Costs.size()) - 2], poses.front(), execution);
+    this->Descend(*m_Costs[std::max<std::size_t>(2, m_Costs.size()) - 2], LittleAtLast, poses.front(), execution);
     for (int k = -3; k <= 3; ++k)
     {
       RigidRegistrationResult tilted = best;
       tilted.pose = this->Tilted(best.pose, k * step);
-      this->Descend(*m_Costs.front(), tilted, execution);
+      this->Descend(*m_Costs.front(), LittleAtLast, tilted, execution);
       if (this->Length(best.pose.StepTo(tilted.pose)) > same)
       {
-        this->Approach(execution, tilted);
+        this->Approach(LittleAtLast, execution, tilted);
         poses.push_back(tilted);
       }
     }
@@ -449,17 +449,22 @@ private:
   void
   Finish(const Execution & execution, RigidRegistrationResult & result) const
   {
-    this->Descend(*m_Costs.back(), result, execution);
+    this->Descend(*m_Costs.back(), LittleAtLast, result, execution);
     result.beyondSearch = this->IsBeyondSearch(result.pose);
     Judge(*m_Costs.back(), m_Radius, m_PrincipalTurns, execution, result);
   }
 
-  /** Levenberg-Marquardt steps within the box. */
+  /** Which share of the cost is little gain: where finer images, on which the pose moves further, and a comparison of
+   * poses follow. */
+  static constexpr double LittleBeforeFinerImages = 0.005;
+  static constexpr double LittleAtLast = 0.0;
+
+  /** Levenberg-Marquardt steps within the box, until they gain little. */
   void
-  Descend(const RigidCost & cost, RigidRegistrationResult & at, const Execution & execution) const
+  Descend(const RigidCost & cost, double little, RigidRegistrationResult & at, const Execution & execution) const
   {
     constexpr double shortest = 0.01; // mm
-    constexpr double least = 1e-4;    // of the cost, which kinks at the projected edges make as rough as that
+    constexpr double least = 1e-4;    // which kinks of the cost at the projected edges make it rough by
     MetricValue      value = cost.EvaluateDerivatives(at.pose, execution.Silent());
     Damping          damping;
     at.cost = value.cost;
@@ -467,12 +472,13 @@ private:
     for (int i = 0; i < m_P.iterations && !at.converged; ++i)
     {
       const Matrix6   damped = damping.Damp(Matrix6(value.hessian), 1e-12 * value.hessian.diagonal().maxCoeff());
-      const RigidPose next = this->Bound(at.pose.Moved(-damped.ldlt().solve(value.gradient)));
-      const double    length = this->Length(at.pose.StepTo(next));
-      const double    there = cost.Evaluate(next, execution.Silent());
-      const double    gain = at.cost - there;
+      const RigidPose next =
+        this->Bound(at.pose.Moved(-(little > 0.0 ? LongerSteps : 1.0) * damped.ldlt().solve(value.gradient)));
+      const double length = this->Length(at.pose.StepTo(next));
+      const double there = cost.Evaluate(next, execution.Silent());
+      const double gain = at.cost - there;
       damping.Tell(gain > 0.0);
-      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < least);
+      at.converged = length < shortest || damping.IsStuck() || (gain > 0.0 && gain < std::max(least, little * there));
       if (gain > 0.0)
       {
         at.pose = next;
@@ -516,6 +522,18 @@ JudgePose(const MeshArrays &                  model,
   const auto      cost = MakeCost(parameters, views, parameters.pixels, *ready);
   const Vector3 & centre = result.pose.centre;
   Judge(*cost, RadiusOf(model.points, centre), PrincipalTurns(model.points, centre), execution, result);
+}
+
+void
+SetCosts(const MeshArrays &                  model,
+         const std::vector<RadiographView> & views,
+         const RigidRadiographParameters &   parameters,
+         const Execution &                   execution,
+         RigidRegistrationResult &           result)
+{
+  const auto ready = MakeModel(model, execution);
+  const auto cost = MakeCost(parameters, views, parameters.pixels, *ready);
+  result.cost = cost->Evaluate(result.pose, execution.Silent(), &result.costs);
 }
 
 RigidRegistrationResult

@@ -20,6 +20,14 @@ SearchRigid(const std::vector<MeshArrays> &                        levels,
             const RigidRadiographParameters &                      parameters,
             const Execution &                                      execution,
             const std::function<void(const RigidPose &, double)> & observe);
+
+/** The costs of the result's pose alone, as JudgePose sets them. */
+void
+SetCosts(const MeshArrays &                  model,
+         const std::vector<RadiographView> & views,
+         const RigidRadiographParameters &   parameters,
+         const Execution &                   execution,
+         RigidRegistrationResult &           result);
 } // namespace bone
 
 #endif

@@ -9,6 +9,11 @@
 #include "boneRadiographView.h"
 #include "boneRigidPose.h"
 
+#include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
+
 namespace bone
 {
 namespace test
@@ -77,6 +82,22 @@ inline std::vector<RadiographView>
 TwoXRays(const MeshArrays & mesh, const RigidPose & pose, int pixels = 96)
 {
   return { XRayOf(mesh, ViewOf({ 0, 1, 0 }, pixels), pose), XRayOf(mesh, ViewOf({ 1, 0, 0 }, pixels), pose) };
+}
+
+/** Adds normal noise, its deviation as a share of the first X-ray's largest value. */
+inline void
+AddNoise(std::vector<RadiographView> & xrays, float share)
+{
+  std::mt19937                    random(3);
+  std::normal_distribution<float> normal(0.0f,
+                                         share * *std::max_element(xrays[0].values.begin(), xrays[0].values.end()));
+  for (RadiographView & xray : xrays)
+  {
+    for (float & x : xray.values)
+    {
+      x += normal(random);
+    }
+  }
 }
 
 /** A pose about the body's middle: mm, radians. */

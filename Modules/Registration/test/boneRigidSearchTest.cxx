@@ -57,17 +57,8 @@ TEST(RigidSearch, APoseThatIsNotDistinctIsOkWhenThreeSearchesFoundIt)
 {
   const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
   // Noise makes the true pose less distinct.
-  std::vector<RadiographView>     views = TwoXRays(Body(12), truth);
-  std::mt19937                    random(3);
-  std::normal_distribution<float> normal(0.0f,
-                                         0.5f * *std::max_element(views[0].values.begin(), views[0].values.end()));
-  for (RadiographView & view : views)
-  {
-    for (float & x : view.values)
-    {
-      x += normal(random);
-    }
-  }
+  std::vector<RadiographView> views = TwoXRays(Body(12), truth);
+  AddNoise(views, 0.5f);
   RigidRegistrationResult judged;
   judged.pose = truth;
   JudgePose(Body(12), views, Parameters(1), Execution(), judged);
