@@ -264,10 +264,11 @@ private:
     for (int i = 0; i < m_P.iterations && !result.converged; ++i)
     {
       const Posterior       posterior = this->MakePosterior(values, at);
-      const DeformableState next = Moved(at, -damping.Damp(posterior.hessian).ldlt().solve(posterior.gradient));
-      const auto            costs = cost.EvaluateCosts(next, silent);
-      const double          gain = this->Gain(at, values, next, costs, posterior.precisions);
-      const bool            isLittle = gain < little && values[0].cost - costs[0] < leastShare * values[0].cost;
+      const DeformableState next =
+        Moved(at, -LongerSteps * damping.Damp(posterior.hessian).ldlt().solve(posterior.gradient));
+      const auto   costs = cost.EvaluateCosts(next, silent);
+      const double gain = this->Gain(at, values, next, costs, posterior.precisions);
+      const bool   isLittle = gain < little && values[0].cost - costs[0] < leastShare * values[0].cost;
       damping.Tell(gain > 0.0);
       result.converged = damping.IsStuck() || (gain > 0.0 && isLittle);
       fit = { gain > 0.0 ? costs[0] : values[0].cost, posterior.precisions[0] };
