@@ -7,9 +7,11 @@ makes first levels with `bonetk build` (kept in the folder of --models), simplif
 paper's Table 3 with boneSimplificationValidation, compares with VTK's decimation, simplifies 1,000 random meshes under random
 bounds, measures time against size, and writes Documentation/validation/simplification.md. --check names an independent
 checker, called as PROGRAM MESH.vtu --json OUT, which must exit 0 for a valid mesh. --only takes the bones whose name has TEXT in it, prints and writes no report;
---part takes one part of the report: levels, angles, storage, vtk, property or time. About an hour on two cores."""
+--part takes one part of the report: levels, angles, storage, vtk, property or time; --jobs is how many bones are worked on at a
+time. About an hour on two cores."""
 
 import argparse
+import concurrent.futures
 import gzip
 import json
 import os
@@ -82,7 +84,7 @@ class Validation:
     def __init__(self, options, folder):
         self.bonetk = options.build / "Apps" / "bonetk" / "bonetk"
         self.program = options.build / "Testing" / "Validation" / "boneSimplificationValidation"
-        self.check, self.folder = options.check, folder
+        self.check, self.folder, self.jobs = options.check, folder, options.jobs
         self.models = options.models or folder
         self.failed = []
 
@@ -102,11 +104,11 @@ class Validation:
                 "-o", model, "-q")
         return model / "model_L1.vtu"
 
-    def checked(self, mesh):
+    def checked(self, mesh, folder):
         """What the independent checker finds; without one, what bonetk does."""
         if not self.check:
             return {"valid": subprocess.run([self.bonetk, "validate", mesh], capture_output=True, check=False).returncode == 0}
-        out = self.folder / "check.json"
+        out = folder / "check.json"
         done = subprocess.run([str(part) for part in ("/usr/bin/python3", self.check, mesh, "--json", out)],
                               capture_output=True, check=False)
         info = json.loads(out.read_text())["info"]
@@ -114,17 +116,26 @@ class Validation:
         return {**info, "valid": done.returncode == 0 and bad == 0}
 
     def hierarchy(self, bone, job="levels"):
-        """With its levels as they are, or with improved angles."""
-        prefix = self.folder / "h"
-        found = json.loads(run(self.program, job, self.first_level(bone), prefix, *bone.images(), *COUNTS))
-        for number, level in enumerate(found["levels"], 1):
-            level["check"] = self.checked(f"{prefix}_L{number}.vtu")
-            if number > 1:
-                which = bone.name + (", angles improved" if job == "angles" else "")
-                self.failed += [f"{which}, level {number}: {what}" for what in misses(level, LIMITS[number - 2], ANGLES[job])]
+        """With its levels as they are, or with improved angles; and what they miss."""
+        first = self.first_level(bone)
+        with tempfile.TemporaryDirectory(dir=self.folder) as name:
+            folder = pathlib.Path(name)
+            found = json.loads(run(self.program, job, first, folder / "h", *bone.images(), *COUNTS))
+            for number, level in enumerate(found["levels"], 1):
+                level["check"] = self.checked(folder / f"h_L{number}.vtu", folder)
+        which = bone.name + (", angles improved" if job == "angles" else "")
+        found["failed"] = [f"{which}, level {number}: {what}" for number, level in enumerate(found["levels"][1:], 2)
+                           for what in misses(level, LIMITS[number - 2], ANGLES[job])]
         if not found["same"]:
-            self.failed.append(f"{bone.name}: not the same from run to run")
+            found["failed"].append(f"{bone.name}: not the same from run to run")
         return found
+
+    def hierarchies(self, chosen, *jobs):
+        """Of each bone in turn, one of each job; several bones at a time."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            for bone, found in zip(chosen, pool.map(lambda bone: [self.hierarchy(bone, job) for job in jobs], chosen)):
+                self.failed += [what for of_job in found for what in of_job["failed"]]
+                yield bone, *found
 
 
 def distance(level, region):
@@ -193,8 +204,7 @@ def paper_table(found):
 
 def levels_part(validation, chosen):
     rows, out = [], []
-    for bone in chosen:
-        found = validation.hierarchy(bone)
+    for bone, found in validation.hierarchies(chosen, "levels"):
         rows += level_rows(bone, found)
         print(*("| " + " | ".join(map(str, row)) + " |" for row in level_rows(bone, found)), sep="\n", flush=True)
         if bone.name == HIP:
@@ -222,8 +232,8 @@ def levels_part(validation, chosen):
 def angles_part(validation, chosen):
     """Levels for finite elements, beside those as they are."""
     rows = []
-    for bone in chosen:
-        both = {job: validation.hierarchy(bone, job) for job in ANGLES}
+    for bone, *both in validation.hierarchies(chosen, *ANGLES):
+        both = dict(zip(ANGLES, both))
         for number in (2, 3):
             plain, better = (both[job]["levels"][number - 1] for job in ANGLES)
             pair = lambda of: f"{of(plain)} → {of(better)}"  # noqa: E731
@@ -392,6 +402,7 @@ def main():
     parser.add_argument("--models", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--part", default="")
+    parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     chosen = [bone for bone in bones(os.environ.get("BONETK_DATA")) if options.only in bone.name]
     first = next((bone for bone in chosen if bone.name == HIP), chosen[0])
