@@ -25,6 +25,7 @@ import numpy
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 
 import smooth_spaces  # noqa: E402
 from report import made_by  # noqa: E402
@@ -342,6 +343,9 @@ def draw_phantom(fitted):
     for degree, place in enumerate(zip(shares, errors)):
         by_storage.annotate(str(degree), place, xytext=(4, 4), textcoords="offset points")
     by_storage.set(xlabel="bytes of the model / bytes of the voxels inside", xscale="log", ylim=(0, None))
+    by_storage.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    by_storage.xaxis.set_major_formatter("{x:g}")
+    by_storage.xaxis.set_minor_formatter(ticker.NullFormatter())
     for axes in (by_degree, by_storage):
         axes.grid(True)
     figure.savefig(OUT / "density_phantom.png", dpi=100)
