@@ -10,11 +10,14 @@ from bonetk_testing import TestCase, main, run
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "Testing/Validation"
 PAGES = ROOT / "Documentation/validation"
-MADE_BY = r"Made by `Testing/Validation/([a-z_]+\.(?:py|sh))` at commit [0-9a-f]{7,12}( with changes)? on \S.*\S"
+MADE_BY = (r"Made by `Testing/Validation/([a-z_]+\.(?:py|sh))` at commit [0-9a-f]{7,12}( with changes| \(made at [0-9a-f]{7,12}, .*\))? "
+           r"on \S.*\S")
 
 
 def faults(pages, scripts):
     """What is amiss, a line each."""
+    modules = sorted(child.name for child in (ROOT / "Modules").iterdir())
+    measured = re.findall(rf"^\| \[(\w+)\].*` \| (?:all|(?:(?:{'|'.join(modules)})(?:, | \|))+)", (pages / "README.md").read_text(), re.M)
     listed = dict(line.split("\t") for line in run(scripts / "run.sh", "--list")[1].splitlines())
     for name in sorted(listed):
         if not (pages / f"{name}.md").exists():
@@ -27,12 +30,14 @@ def faults(pages, scripts):
             yield f"{page.name}: its third line does not say script, commit and machine as report.py does"
         elif made[1] not in listed.get(page.stem, "").split():
             yield f"{page.name}: README.md lists no command of {made[1]} for it"
+        elif page.stem not in measured:
+            yield f"{page.name}: README.md lists no modules that exist for it"
         elif not re.search(r"made_by\(__file__\)|report\.py", (scripts / made[1]).read_text()):
             yield f"{made[1]} writes no line of report.py"
 
 
-LIST = ("| page | command |\n|---|---|\n| [one](one.md) | `one.sh $build` | 1 min |\n"
-        "| [two](two.md) | `NUMBER=2 two.sh \"a b\"` | 2 h |\n")
+LIST = ("| page | command | measures | about |\n|---|---|---|---|\n| [one](one.md) | `one.sh $build` | Some | 1 min |\n"
+        "| [two](two.md) | `NUMBER=2 two.sh \"a b\"` | Other, Third | 2 h |\n")
 
 
 class Reports(TestCase):
@@ -80,39 +85,62 @@ class Reports(TestCase):
         self.assertEqual(code, 2)
         self.assertIn("there is no report three", err)
 
+    def made(self, scripts, environment):
+        """Makes those that are stale: their names."""
+        code, out, err = run(scripts / "run.sh", "--stale", env=environment)
+        self.assertEqual((code, err), (0, ""))
+        return [line.split()[1].rstrip(":") for line in out.splitlines() if line.endswith(" s")]
+
+    def committed(self, file):
+        """Changes the file, commits it, and returns the commit."""
+        pathlib.Path(file).parent.mkdir(parents=True, exist_ok=True)
+        with open(file, "a") as stream:
+            stream.write(f"# {file}\n")
+        for arguments in (("init", "--quiet"), ("add", "Modules", "Apps"), ("commit", "--quiet", "--message", file)):
+            code, _, err = run("git", "-c", "user.name=a", "-c", "user.email=b@c", *arguments)
+            self.assertEqual(code, 0, err)
+        return run("git", "rev-parse", "--short=7", "HEAD")[1].strip()
+
     def test_those_of_other_programs_alone(self):
+        """Reports whose modules changed, or those that these need, are made again; others are given the commit."""
         pages, scripts = self.copy()
         (pages / "README.md").write_text(LIST)
         for script in ("one.sh", "two.sh"):
             page = pages.absolute() / script.replace(".sh", ".md")
             (scripts / script).write_text(f'#!/bin/sh\n(echo "# Page"; echo; "{scripts}/report.py" {script}) > {page}\n')
             (scripts / script).chmod(0o755)
-        os.makedirs("Modules/Some/test")
+        for module, depends in (("Some", "\n  DEPENDS Base PRIVATE Library"), ("Other", ""), ("Third", " DEPENDS Base"), ("Base", ""),
+                                ("Evaluation", " DEPENDS Base"), ("Phantom", "")):
+            os.makedirs(f"Modules/{module}/test")
+            pathlib.Path(f"Modules/{module}/CMakeLists.txt").write_text(f"bonetk_module({module}{depends})\n")
         os.mkdir("build")
         environment = dict(os.environ, BONETK_DATA=".", BONETK_BUILD="build", BONETK_WORK="work")
-
-        def committed(file):
-            pathlib.Path(file).write_text(f"{file} {len(file)}\n")
-            for arguments in (("init", "--quiet"), ("add", "Modules"), ("commit", "--quiet", "--message", file)):
-                self.assertEqual(run("git", "-c", "user.name=a", "-c", "user.email=b@c", *arguments)[0], 0)
-
-        def made():
-            code, out, err = run(scripts / "run.sh", "--stale", env=environment)
-            self.assertEqual((code, err), (0, ""))
-            return [line.split()[1].rstrip(":") for line in out.splitlines() if line.endswith(" s")]
-
-        committed("Modules/a.cxx")
-        self.assertEqual(made(), ["one", "two"])
-        self.assertEqual(made(), [])
-        committed("Modules/README.md")
-        committed("Modules/Some/test/bTest.cxx")
+        first = self.committed("Apps/a.cxx")
+        self.assertEqual(self.made(scripts, environment), ["one", "two"])
+        self.assertEqual(self.made(scripts, environment), [])
+        self.committed("Modules/README.md")
+        self.committed("Modules/Some/test/bTest.cxx")
+        self.committed("Modules/Base/README.md")
         (pages / "two.md").unlink()
-        self.assertEqual(made(), ["two"])
-        committed("Modules/c.cxx")
-        self.assertEqual(made(), ["one", "two"])
-        committed("Modules/Some/test/reference.cxx")  # that validation programs take
-        self.assertEqual(made(), ["one", "two"])
-        self.assertEqual(len(os.listdir("work")), 3)
+        self.assertEqual(self.made(scripts, environment), ["two"])
+        last = self.committed("Modules/Other/c.cxx")
+        self.assertEqual(self.made(scripts, environment), ["two"])
+        self.assertRegex((pages / "one.md").read_text(), f"at commit {last} \\(made at {first}, .*\\) on ")
+        self.assertIn(f"at commit {last} on ", (pages / "two.md").read_text())
+        latest = self.committed("Modules/Other/c.cxx")
+        self.assertEqual(self.made(scripts, environment), ["two"])
+        self.assertRegex((pages / "one.md").read_text(), f"at commit {latest} \\(made at {first}, .*\\) on ")
+        with open("Modules/Some/d.cxx", "w"):
+            self.assertEqual(self.made(scripts, environment), [])  # git does not know it
+        self.committed("Modules/Some/d.cxx")
+        self.assertEqual(self.made(scripts, environment), ["one"])
+        self.committed("Modules/Some/test/reference.cxx")  # that validation programs take
+        self.assertEqual(self.made(scripts, environment), ["one"])
+        self.committed("Modules/Base/e.h")
+        self.assertEqual(self.made(scripts, environment), ["one", "two"])
+        self.committed("Apps/f.cxx")
+        self.assertEqual(self.made(scripts, environment), ["one", "two"])
+        self.assertGreater(len(os.listdir("work")), 1)
 
 
 if __name__ == "__main__":

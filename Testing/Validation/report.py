@@ -1,29 +1,88 @@
 #!/usr/bin/env python3
 """The line that every report begins with: by which script, at which commit and on which machine it was made.
 
-    from report import made_by          made_by(__file__)
-    Testing/Validation/report.py NAME   prints it, for scripts of the shell
-    Testing/Validation/report.py        the commit alone"""
+    from report import made_by                   made_by(__file__)
+    Testing/Validation/report.py NAME            prints it, for scripts of the shell
+    Testing/Validation/report.py                 the commit alone
+    Testing/Validation/report.py --of MODULE...  the last commit that changed these modules' programs
+    Testing/Validation/report.py --stale         names of the reports that do not measure the programs as they are, a line each
+    Testing/Validation/report.py --confirm       the others are given the present commit: nothing that they measure has changed
+"""
 import os
 import pathlib
 import platform
+import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# What the programs are made of: reports that name one commit measure the same programs, whatever tests and pages came after it.
+PAGES = ROOT / "Documentation/validation"
+# What the programs are made of, beside modules: reports that name one commit measure the same programs, whatever tests and pages
+# came after it. Options of the compiler that change what it makes are those of presets and modules.
+COMMON = ("CMakeLists.txt", "CMakePresets.json", "Apps", "Testing/Validation/*.cxx", "Testing/Validation/*.h",
+          "Testing/Validation/CMakeLists.txt")
 # Of the tests' folders validation programs take references and helpers, all but the tests themselves.
-PROGRAMS = ("CMake", "CMakeLists.txt", "Modules", "Apps", "Testing/Validation/*.cxx", "Testing/Validation/*.h",
-            "Testing/Validation/CMakeLists.txt", ":(exclude)Modules/*/test/*Test.cxx", ":(exclude)*.md")
+EXCLUDED = (":(exclude)Modules/*/test/*Test.cxx", ":(exclude)*.md")
+AT = re.compile(r"^(Made by `[^`]*`) at commit ([0-9a-f]{7,12})(?: \(made at ([0-9a-f]{7,12}), [^)]*\))? on ", re.MULTILINE)
 
 
-def commit():
-    """The last that changed the programs measured, and whether they differ from it now."""
-    git = ["git", "-C", ROOT]
-    last = subprocess.run([*git, "log", "-1", "--format=%h", "--abbrev=7", "HEAD", "--", *PROGRAMS], capture_output=True, text=True,
-                          check=True).stdout.strip()
-    changed = subprocess.run([*git, "diff", "--quiet", "HEAD", "--", *PROGRAMS]).returncode != 0
+def git(*arguments):
+    return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
+
+
+def needed(modules):
+    """The modules and all that they depend on."""
+    found, left = set(), list(modules)
+    while left:
+        module = left.pop()
+        if module not in found:
+            found.add(module)
+            listed = (ROOT / "Modules" / module / "CMakeLists.txt").read_text()
+            depends = re.search(r"bonetk_module\(\w+\s+DEPENDS([\s\w]*?)(?:\s(?:PUBLIC|PRIVATE)\b|\))", listed)
+            left += depends[1].split() if depends else []
+    return sorted(found)
+
+
+def sources(modules):
+    """What git is asked about; of all modules for `all`."""
+    of = ["Modules", "CMake"] if "all" in modules else [f"Modules/{module}" for module in needed(modules)]
+    return (*COMMON, *of, *EXCLUDED)
+
+
+def commit(modules=("all",)):
+    """The last that changed what these modules' programs are made of, and whether it differs from it now."""
+    of = sources(modules)
+    last = git("log", "-1", "--format=%h", "--abbrev=7", "HEAD", "--", *of).stdout.strip()
+    changed = git("diff", "--quiet", "HEAD", "--", *of).returncode != 0
     return last + (" with changes" if changed else "")
+
+
+def measured():
+    """Of each report of README.md's table, the modules that it measures."""
+    rows = re.findall(r"^\| \[(\w+)\]\(\1\.md\) \| `.*` \| ([\w, ]+) \| .* \|$", (PAGES / "README.md").read_text(), re.MULTILINE)
+    return {name: modules.split(", ") for name, modules in rows}
+
+
+def is_fresh(name, modules):
+    """Whether nothing that the report measures has changed since the commit that it names."""
+    page = PAGES / f"{name}.md"
+    made = AT.search(page.read_text()) if page.exists() else None
+    return made is not None and git("diff", "--quiet", made[2], "--", *sources(modules)).returncode == 0
+
+
+def stale():
+    return [name for name, modules in measured().items() if not is_fresh(name, modules)]
+
+
+def confirm():
+    """Gives reports that are not stale the present commit; names that at which they were made."""
+    now, left = commit(), stale()
+    for name in measured():
+        page = PAGES / f"{name}.md"
+        made = None if name in left or not re.fullmatch("[0-9a-f]+", now) else AT.search(page.read_text())
+        if made and made[2] != now:
+            line = f"{made[1]} at commit {now} (made at {made[3] or made[2]}, what it measures is the same) on "
+            page.write_text(page.read_text().replace(made[0], line, 1))
 
 
 def machine():
@@ -46,5 +105,16 @@ def made_by(script):
     return f"Made by `Testing/Validation/{os.path.basename(script)}` at commit {COMMIT} on {machine()}"
 
 
+def main(arguments):
+    if arguments[:1] == ["--of"]:
+        print(commit(arguments[1:]))
+    elif arguments == ["--stale"]:
+        print("".join(f"{name}\n" for name in stale()), end="")
+    elif arguments == ["--confirm"]:
+        confirm()
+    else:
+        print(made_by(arguments[0]) if arguments else COMMIT)
+
+
 if __name__ == "__main__":
-    print(made_by(sys.argv[1]) if len(sys.argv) > 1 else COMMIT)
+    main(sys.argv[1:])

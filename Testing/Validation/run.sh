@@ -2,27 +2,27 @@
 # Makes the reports of Documentation/validation again, each by the command that the table in its README.md names:
 #
 #   BONETK_DATA=DATA Testing/Validation/run.sh [REPORT...]     default: all
-#   BONETK_DATA=DATA Testing/Validation/run.sh --stale         those that are not of the programs as they are
+#   BONETK_DATA=DATA Testing/Validation/run.sh --stale         those that do not measure the programs as they are; the others
+#                                                              are given the present commit
 #   Testing/Validation/run.sh --list                           the commands alone
 #
 # Builds the preset test first (BONETK_BUILD: takes that build tree as it is). Goes on after a report that fails, names those at
 # the end, and ends with 1 then. BONETK_CHECK names an independent checker of meshes, called as PROGRAM MESH.vtu.
-# Models that several reports measure are made once: in the folder BONETK_WORK, which keeps them by commit, or in a temporary one.
+# Models that several reports measure are made once: in the folder BONETK_WORK, which keeps them by the commit that last changed what
+# makes them, or in a temporary one.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-# "| [atlas](atlas.md) | `atlas.py $build` | 20 min |" to "atlas<tab>atlas.py $build"
-reports=$(sed -n 's/^| \[\(.*\)\](\1\.md) | `\(.*\)` | .* |$/\1\t\2/p' "$root/Documentation/validation/README.md")
+# "| [atlas](atlas.md) | `atlas.py $build` | Evaluation | 20 min |" to "atlas<tab>atlas.py $build"
+reports=$(sed -n 's/^| \[\(.*\)\](\1\.md) | `\(.*\)` | .* | .* |$/\1\t\2/p' "$root/Documentation/validation/README.md")
 if [ "${1:-}" = --list ]; then
   echo "$reports"
   exit
 fi
 if [ "${1:-}" = --stale ]; then
-  commit=$("$root/Testing/Validation/report.py")
-  set --
-  while IFS=$'\t' read -r report _; do
-    grep -q "^Made by .* at commit $commit on " "$root/Documentation/validation/$report.md" 2> /dev/null || set -- "$@" "$report"
-  done <<< "$reports"
-  echo "== not of commit $commit: ${*:-none}"
+  "$root/Testing/Validation/report.py" --confirm
+  mapfile -t names < <("$root/Testing/Validation/report.py" --stale)
+  set -- "${names[@]}"
+  echo "== not of the programs as they are: ${*:-none}"
   [ $# -gt 0 ] || exit 0
 fi
 [ $# -gt 0 ] || mapfile -t all < <(cut -f 1 <<< "$reports")
@@ -42,7 +42,7 @@ check=${BONETK_CHECK:+--check $BONETK_CHECK}
 # Debian's Python, which sees Debian's numpy and VTK.
 export BONETK=$build/Apps/bonetk/bonetk build programs check PATH=$root/Testing/Validation:/usr/bin:$PATH
 if [ -n "${BONETK_WORK:-}" ]; then
-  work=$BONETK_WORK/$("$root/Testing/Validation/report.py" | tr ' ' _)
+  work=$BONETK_WORK/$("$root/Testing/Validation/report.py" --of Evaluation Phantom | tr ' ' _)
 else
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
