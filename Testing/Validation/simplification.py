@@ -123,6 +123,7 @@ class Validation:
             found = json.loads(run(self.program, job, first, folder / "h", *bone.images(), *COUNTS))
             for number, level in enumerate(found["levels"], 1):
                 level["check"] = self.checked(folder / f"h_L{number}.vtu", folder)
+                level["cortex"] = cortex(folder / f"h_L{number}.vtu")
         which = bone.name + (", angles improved" if job == "angles" else "")
         found["failed"] = [f"{which}, level {number}: {what}" for number, level in enumerate(found["levels"][1:], 2)
                            for what in misses(level, LIMITS[number - 2], ANGLES[job])]
@@ -136,6 +137,42 @@ class Validation:
             for bone, found in zip(chosen, pool.map(lambda bone: [self.hierarchy(bone, job) for job in jobs], chosen)):
                 self.failed += [what for of_job in found for what in of_job["failed"]]
                 yield bone, *found
+
+
+def least_angles(points, cells):
+    """Of each cell the smallest dihedral angle, degrees."""
+    normals = numpy.stack([numpy.cross(points[cells[:, b]] - points[cells[:, a]], points[cells[:, c]] - points[cells[:, a]])
+                           for a, b, c in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))], 1)
+    normals /= numpy.maximum(numpy.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
+    cosine = numpy.max([-(normals[:, i] * normals[:, j]).sum(1) for i in range(4) for j in range(i)], 0)
+    return numpy.degrees(numpy.arccos(numpy.minimum(1, cosine)))
+
+
+def cortex(file):
+    """Of a level the share of cortical cells, the layer's mean thickness (mm) and its triangles' edge (mm, of equilateral ones of
+    the mean area), and means of cells' smallest angles: cortical ones', and those of thirds of prisms of that thickness and edge."""
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(file))
+    reader.Update()
+    mesh = reader.GetOutput()
+    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    cortical = vtk_to_numpy(mesh.GetCellData().GetArray("Region")) == 1
+    edges = points[cells[:, 1:]] - points[cells[:, :1]]
+    faces = numpy.concatenate([cells[:, f] for f in ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])])
+    _, first, count = numpy.unique(numpy.sort(faces, 1), axis=0, return_index=True, return_counts=True)
+    outer = first[count == 1]
+    outer = faces[outer[cortical[outer % len(cells)]]]
+    a, b, c = (points[outer[:, k]] for k in range(3))
+    areas = numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1) / 2
+    thickness = numpy.abs(numpy.linalg.det(edges[cortical])).sum() / 6 / areas.sum()
+    edge = numpy.sqrt(4 * areas.mean() / numpy.sqrt(3))
+    corners = numpy.array([[x, y, z] for z in (0, thickness / edge) for x, y in ((0, 0), (1, 0), (0.5, numpy.sqrt(0.75)))])
+    return {"share": cortical.mean(), "thickness": thickness, "edge": edge, "mean": least_angles(points, cells[cortical]).mean(),
+            "prisms": least_angles(corners, numpy.array([[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]])).mean()}
 
 
 def distance(level, region):
@@ -229,6 +266,11 @@ def levels_part(validation, chosen):
     return "\n".join([*head, table(LEVEL_HEAD, rows), *limits, *out])
 
 
+def cortex_text(found):
+    return (f"{100 * found['share']:.0f} %, {found['thickness']:.1f} mm under {found['edge']:.0f} mm: {found['mean']:.1f}; "
+            f"{found['prisms']:.1f}")
+
+
 def angles_part(validation, chosen):
     """Levels for finite elements, beside those as they are."""
     rows = []
@@ -240,21 +282,22 @@ def angles_part(validation, chosen):
             rows.append((bone.name if number == 2 else "", number, better["tetrahedra"], "yes" if better["check"]["valid"] else "NO",
                          sum(r["crossing"] for r in better["regions"]),
                          pair(lambda found: f"{found['angleCortical']:.1f}, {found['angleOther']:.1f}"),
-                         pair(lambda found: found["angles"]["below"]), pair(lambda found: f"{found['angles']['mean']:.1f}"),
+                         pair(lambda found: found["angles"]["below"]), pair(lambda found: f"{found['angles']['mean']:.1f}"), cortex_text(better["cortex"]),
                          "/".join(f"{100 * r['volumeChange']:+.2f}" for r in better["regions"]),
                          pair(lambda found: "/".join(f"{distance(found, k):.3f}" for k in range(len(found["regions"])))),
                          pair(lambda found: f"{found['surfaceError']:.1f}"), pair(lambda found: f"{found['density']['percent']:.2f}"),
                          f"{both['levels']['processorSeconds']:.1f} → {both['angles']['processorSeconds']:.1f}" if number == 2 else ""))
             print("| " + " | ".join(map(str, rows[-1])) + " |", flush=True)
-    head = ("bone", "level", "cells", "valid", "crossing", "least angles", "cells below", "mean of least angles", "volumes, %",
-            "mean distance, mm", "largest, mm", "error, %", "s")
+    head = ("bone", "level", "cells", "valid", "crossing", "least angles", "cells below", "mean of least angles", "cortical cells",
+            "volumes, %", "mean distance, mm", "largest, mm", "error, %", "s")
     return "\n".join(["## Levels for finite elements: `--improve-angles`\n",
                       "The levels above → those with `--improve-angles`, which wants 5 degrees in the cortical layer and 8 elsewhere, and holds back",
                       "edges of more than four times that of a regular tetrahedron of the mean volume. Points move (surfaces' along level 1's), so",
-                      "that they are no subset of those before. Below: cells with a smaller angle. Mean of all",
-                      "cells' smallest dihedral angles. Where the volumes' bound of 3 % comes first, angles stay smaller: a layer 1 mm thick under",
-                      "triangles 15 mm long has angles of 4 degrees, and only a thicker layer has larger ones. So it is with means: cortical cells,",
-                      "half to three quarters of a level, have 29 to 35 degrees at level 1, and fewer the wider triangles are.\n", table(head, rows)])
+                      "that they are no subset of those before. Below: cells with a smaller angle. Mean of all cells' smallest dihedral angles.",
+                      "Cortical cells: their share, the layer's mean thickness, the edge of equilateral triangles of its outer surface's mean area;",
+                      "the mean of these cells' smallest angles; and that of the three tetrahedra of a prism of this thickness and edge, which is",
+                      "what a layer of one cell across has. So wide triangles over a thin layer leave no larger means, whatever is done, and where",
+                      "the volumes' bound of 3 % comes first, which keeps the layer from growing thicker, least angles stay smaller too.\n", table(head, rows)])
 
 
 def storage_part(validation, bone):
@@ -317,10 +360,6 @@ def decimated(first, count, scale, out):
     found = numpy.array([region[t] if t >= 0 else 0 for t in at], numpy.int32)
     edges = points[cells[:, 1:]] - points[cells[:, :1]]
     volume = numpy.linalg.det(edges) / 6
-    normals = numpy.stack([numpy.cross(points[cells[:, b]] - points[cells[:, a]], points[cells[:, c]] - points[cells[:, a]])
-                           for a, b, c in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))], 1)
-    normals /= numpy.maximum(numpy.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
-    cosine = max((-(normals[:, i] * normals[:, j]).sum(1)).max() for i in range(4) for j in range(i))
     new = convert.vtk_to_numpy(result.GetPointData().GetScalars() or result.GetPointData().GetArray(0)).astype(float) / scale
     for name, data in (("DensityCoefficients", new[cells]), ("Degree", numpy.ones(len(cells), numpy.int32)), ("Region", found)):
         array = convert.numpy_to_vtk(numpy.ascontiguousarray(data), deep=True)
@@ -331,7 +370,7 @@ def decimated(first, count, scale, out):
     writer.SetInputData(result)
     writer.Write()
     return {"seconds": seconds, "cells": len(cells), "inverted": int((volume <= 0).sum()),
-            "angle": numpy.degrees(numpy.arccos(min(1, cosine))),
+            "angle": least_angles(points, cells).min(),
             "volumes": {k: volume[found == k].sum() for k in numpy.unique(region)}}
 
 
