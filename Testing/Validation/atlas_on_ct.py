@@ -192,8 +192,7 @@ volume. Seconds: median by the clock, two threads.
 |---|---|---|---|---|---|---|---|---|---|
 {table}
 Along the bone, mean distance by tenths: {", ".join(f"{end:.2f}" for end in ends)} mm. What is left lies at the ends, where the cortex is thin
-and neighbours touch. The worst run ({worst["found"]:.2f} mm; the fossa beside the neck is
-deeper than any of the others'):
+and neighbours touch. The worst run ({worst["subject"]}, {worst["found"]:.2f} mm, {100 * worst["supported"]:.0f} % on edges: `{worst["quality"]}`):
 
 ![worst run](atlas_on_ct_worst.png)
 
