@@ -90,8 +90,7 @@ class Volume(TestCase):
         self.assertGreater(dice(voxels("found.nii.gz") > 0, voxels("mirror_l.nii.gz") > 0), 0.93)
 
     def test_build_needs_no_label_map(self):
-        self.succeed("build", "ct.nii.gz", "--atlas", "atlas.h5", "--slice-step", 6, "--contour-spacing", 12, "--no-page", "-o",
-                     "built")
+        self.succeed("build", "ct.nii.gz", "--atlas", "atlas.h5", "--slice-step", 6, "--contour-spacing", 8, "-o", "built")
         report = read_json("built/report.json")
         self.assertEqual(report["registration"]["quality"], "ok")
         self.assertTrue(report["input"]["atlas"].endswith("atlas.h5"))
