@@ -5,10 +5,12 @@ Builds the models (or takes those built before: MODELS=folder) and registers eac
 Documentation/validation/registration.md and registration_capture.png. Needs matplotlib.
 Environment: BONETK (the program), BONETK_DATA (folder of data), BONETK_VALIDATION (boneRegistrationValidation).
 Argument: by how much to multiply the numbers of starts, 1 without.
+Trials are kept beside the models, so that a page that was broken off goes on at the same commit and on the same machine.
 
     BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneRegistrationValidation \\
         Testing/Validation/registration.py
 """
+import hashlib
 import json
 import os
 import pathlib
@@ -55,9 +57,24 @@ class Runs:
 
     def trials(self, bones, count, *options):
         count = max(2, round(self.factor * count))
-        lines = run(os.environ["BONETK_VALIDATION"], self.data / f"{bones[0][1]}_ct.nii.gz",
-                    *map(self.model, bones), "--count", count, "--seed", 7, *options).splitlines()
-        return [json.loads(line) for line in lines]
+        command = [os.environ["BONETK_VALIDATION"], self.data / f"{bones[0][1]}_ct.nii.gz",
+                   *map(self.model, bones), "--count", count, "--seed", 7, *options]
+        made = made_by(__file__)
+        key = hashlib.sha1(" ".join(map(str, (made, *command))).encode()).hexdigest()
+        kept = self.folder / "trials" / f"{key}.jsonl"
+        if kept.exists():
+            return read(kept.read_text())
+        lines = run(*command)
+        if "with changes" not in made:
+            kept.parent.mkdir(exist_ok=True)
+            written = kept.with_suffix(".part")
+            written.write_text(lines)
+            written.rename(kept)
+        return read(lines)
+
+
+def read(lines):
+    return [json.loads(line) for line in lines.splitlines()]
 
 
 def run(*command):
