@@ -5,7 +5,7 @@
 
 makes the standard models with bonetk, registers them to the surfaces in BONETK_DATA/femur_shapes (each in a random pose, its
 vertices shuffled) and to models of scanned phantom hemipelves, trains, and writes Documentation/validation/atlas.md. With --only the other
-parts are taken from the last run in the scratch folder. About 20 minutes on two cores."""
+parts are taken from the last run in the scratch folder. About ten minutes on two cores."""
 
 import argparse
 import json

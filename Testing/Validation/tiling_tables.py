@@ -4,7 +4,7 @@
     BONETK_DATA=... Testing/Validation/tiling_tables.py BUILD_FOLDER --check PROGRAM
 
 writes Documentation/validation/tiling_tables.md. --check names an independent checker, called as PROGRAM MESH.vtu
---label LABELS --label-value V --json OUT, which exits 0 for a valid mesh. Times need a quiet machine. About 20 minutes on
+--label LABELS --label-value V --json OUT, which exits 0 for a valid mesh. Times need a quiet machine. About half an hour on
 two cores."""
 
 import argparse
