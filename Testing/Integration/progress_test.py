@@ -184,7 +184,7 @@ class Progress(TestCase):
         text = self.on_terminal(*BUILD)
         shown = [line for line in re.split("[\r\n]+", text) if "%" in line]
         self.assertGreater(len(shown), 3)
-        pattern = r"bonetk build: ([a-z0-9 ]*[a-z]) +(\d+) %(, about \d+ s left)? *"
+        pattern = r"bonetk build: ([a-z]+(?: [a-z]+)*(?: L\d)?) +(\d+) %(, about \d+ s left)? *"
         found = [re.fullmatch(pattern, line) for line in shown]
         self.assertTrue(all(found), shown)
         shares = [int(match.group(2)) for match in found]
