@@ -148,6 +148,39 @@ class Reports(TestCase):
         self.assertEqual(self.made(scripts, environment), ["one", "two"])
         self.assertGreater(len(os.listdir("work")), 1)
 
+    def fake(self, build, differs=""):
+        """A build tree whose bonetk writes its arguments to what it is to write, and otherwise where a command is named."""
+        os.makedirs(f"{build}/Apps/bonetk")
+        program = pathlib.Path(f"{build}/Apps/bonetk/bonetk")
+        program.write_text('#!/bin/sh\nwhile [ "$1" != -o ]; do all="$all $1"; shift; done\n'
+                           f'case "$all" in *{differs or "nothing"}*) all="$all changed";; esac\necho "\\"$all\\"" > "$2"\n')
+        program.chmod(0o755)
+
+    def test_reports_of_programs_that_do_the_same(self):
+        pages, scripts = self.copy()
+        (pages / "README.md").write_text(LIST)
+        for name in ("one", "two"):
+            (pages / f"{name}.md").write_text("# Page\n\nMade by `Testing/Validation/one.sh` at commit 0123456 on a machine.\n")
+        for module in ("Some", "Other", "Third"):
+            os.makedirs(f"Modules/{module}")
+            pathlib.Path(f"Modules/{module}/CMakeLists.txt").write_text(f"bonetk_module({module})\n")
+        now = self.committed("Apps/a.cxx")
+        for build, differs in (("old", ""), ("new", ""), ("other", "thickness")):
+            self.fake(build, differs)
+        environment = dict(os.environ, BONETK_DATA=".")
+        code, out, err = run(scripts / "unchanged.py", "old", "other", "--confirm", "one", env=environment)
+        self.assertEqual((code, err), (1, "1 files differ\n"))
+        self.assertRegex(out, "\nbonetk thickness .* -> thickness.vtp\n")
+        self.assertEqual(out.count("-> the same\n"), out.count("\n") - 1)
+        self.assertIn("at commit 0123456 on ", (pages / "one.md").read_text())
+        code, _, err = run(scripts / "unchanged.py", "old", "new", "--confirm", "one", env=environment)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn(f"at commit {now} (made at 0123456, what it measures is the same) on ", (pages / "one.md").read_text())
+        self.assertIn("at commit 0123456 on ", (pages / "two.md").read_text())
+        code, _, err = run(scripts / "unchanged.py", "old", "new", "--confirm", "three", env=environment)
+        self.assertEqual(code, 2)
+        self.assertIn("there is no report three", err)
+
 
 if __name__ == "__main__":
     main()

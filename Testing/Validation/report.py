@@ -74,12 +74,12 @@ def stale():
     return [name for name, modules in measured().items() if not is_fresh(name, modules)]
 
 
-def confirm():
-    """Gives reports that are not stale the present commit; names that at which they were made."""
-    now, left = commit(), stale()
-    for name in measured():
+def confirm(names):
+    """Gives reports the present commit; names that at which they were made."""
+    now = commit()
+    for name in names if re.fullmatch("[0-9a-f]+", now) else []:
         page = PAGES / f"{name}.md"
-        made = None if name in left or not re.fullmatch("[0-9a-f]+", now) else AT.search(page.read_text())
+        made = AT.search(page.read_text())
         if made and made[2] != now:
             line = f"{made[1]} at commit {now} (made at {made[3] or made[2]}, what it measures is the same) on "
             page.write_text(page.read_text().replace(made[0], line, 1))
@@ -111,7 +111,8 @@ def main(arguments):
     elif arguments == ["--stale"]:
         print("".join(f"{name}\n" for name in stale()), end="")
     elif arguments == ["--confirm"]:
-        confirm()
+        left = stale()
+        confirm(name for name in measured() if name not in left)
     else:
         print(made_by(arguments[0]) if arguments else COMMIT)
 
