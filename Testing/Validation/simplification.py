@@ -292,8 +292,8 @@ def angles_part(validation, chosen):
                       "edges of more than four times that of a regular tetrahedron of the mean volume. Points move (surfaces' along level 1's), so",
                       "that they are no subset of those before. Below: cells with a smaller angle. Mean of all cells' smallest dihedral angles.",
                       "Cortical cells: their share, the layer's mean thickness, the edge of equilateral triangles of its outer surface's mean area;",
-                      "the mean of these cells' smallest angles. The wider the triangles over a thin layer, the flatter its cells. Where the bound of",
-                      "3 % on volumes comes first, which keeps the layer from growing thicker, least angles stay smaller than wanted.\n", table(head, rows)])
+                      "the mean of these cells' smallest angles. The wider the triangles over a thin layer, the flatter its cells.\n",
+                      table(head, rows)])
 
 
 def storage_part(validation, bone):

@@ -25,12 +25,12 @@ namespace bone
  * the rim of a flat cut, changes the topology of the body or of one of its surfaces, inverts a cell, or lets the
  * boundary pass through itself. The error of the density is always measured against the first level. Cells that change
  * are fitted again, at each level's end, to samples of the level before. Flips raise the smallest dihedral angles;
- * points stay where they are, unless ImproveAngles is on: then, when a level is all but reached, points of its worst
- * cells move, those of surfaces along the first level's, edges of surfaces are flipped, and points are moved along
- * normals so that regions keep their volumes, until no angle is below WantedDihedralAngle (in the cortical layer
- * WantedCorticalDihedralAngle) or the bound on volumes is reached. That is for finite elements, whose stiffness
- * matrices small angles spoil (J. R. Shewchuk, "What is a good linear finite element?", 2002); long cells, which are too
- * stiff in bending, are avoided for the same reason.
+ * points stay where they are, unless ImproveAngles is on: then, when a level is reached, points move and edges of
+ * surfaces are flipped so that the sum of all cells' smallest angles rises, from which it is taken how far surfaces lie
+ * from the first level's, how far volumes are from theirs, and what cells lack of WantedDihedralAngle (in the cortical
+ * layer of WantedCorticalDihedralAngle), more and more of that until none is below. That is for finite elements, whose
+ * stiffness matrices small angles spoil (J. R. Shewchuk, "What is a good linear finite element?", 2002); long cells,
+ * which are too stiff in bending, are avoided for the same reason.
  *
  * A level ends at its number of tetrahedra, at its bound on the density error, on the distance of its surfaces or on
  * the volume of a region, or when nothing more is allowed; the level's stopReason says which: "tetrahedra reached",

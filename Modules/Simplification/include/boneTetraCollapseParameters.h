@@ -31,7 +31,7 @@ namespace bone
     ParameterRange::Between(0.0, 1.23), "rad", "min-cortical-angle", \
     "The same in the cortical layer, which may be thin; half of --min-angle where that alone is given") \
   flag(improveAngles, ImproveAngles, false, "improve-angles", \
-    "Levels for finite elements: points slide along surfaces and edges flip where angles are below the next two, or cells long") \
+    "Levels for finite elements: points move and edges flip so that angles are at least the next two, and cells not long") \
   value(double, wantedDihedralAngle, WantedDihedralAngle, 0.13962634015954636, ParameterRange::Between(0.0, 1.23), \
     "rad", "wanted-angle", "With --improve-angles: dihedral angle that cells are to have at least") \
   value(double, wantedCorticalDihedralAngle, WantedCorticalDihedralAngle, 0.08726646259971647, \

@@ -3,96 +3,106 @@
  *=========================================================================*/
 #include "boneAngleImprovement.h"
 
-#include "boneMeshRepair.h"
+#include "boneAngleRelaxation.h"
+#include "boneTetraFlips.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace bone
 {
 namespace
 {
-/** How far surfaces may go, as shares of the boundary's mean edge length, one after the other. */
-constexpr std::array<double, 5> Distances = { 0.025, 0.05, 0.09, 0.15, 0.25 };
-constexpr int                   Passes = 3; ///< within each
+/** How far surfaces may go from what they were, of the boundary's mean edge length. */
+constexpr double SurfaceShare = 0.25;
 /** Cells are flipped where an angle is below this, rad (25 degrees). */
 constexpr double FlippedAngle = 0.44;
-/** Share of the bound on volumes that is left alone. */
-constexpr double VolumeSlack = 0.3;
+
+/** Weights of the merit while it is raised: that of cells below their floor is doubled until none is left. */
+struct Weights
+{
+  double surfaces;
+  double floors;
+  double largestFloors;
+};
+/** At first cells get their shape, then surfaces come back. */
+constexpr std::array<Weights, 2> Steps = { { { 250.0, 8.0, 64.0 }, { 500.0, 16.0, 1024.0 } } };
+constexpr int                    Sweeps = 2; ///< before a weight is doubled
 
 /** One run: the tools, which know the complex as it is. */
 class Improver
 {
 public:
-  Improver(TetraComplex & complex, const SurfaceTarget & surfaces, const AngleGoal & goal, const Execution & execution)
+  Improver(TetraComplex &        complex,
+           const SurfaceTarget & surfaces,
+           const RegionVolumes & volumes,
+           const AngleGoal &     goal,
+           const Execution &     execution)
     : m_Complex(complex)
-    , m_Execution(execution)
     , m_Goal(goal)
-    , m_Edge(MeanBoundaryEdge(complex))
-    , m_Bound(complex, surfaces, m_Edge)
+    , m_Execution(execution.Silent())
+    , m_Bound(complex, surfaces, SurfaceShare * MeanBoundaryEdge(complex))
     , m_Mover(complex, &m_Bound, execution)
-    , m_Optimizer(complex, m_Mover, surfaces)
-    , m_Repair(complex, m_Mover, Distances.back() * m_Edge)
-    , m_Limit([this](IdType t) { return std::cos(m_Goal.floors.Of(m_Complex.Region(t))); })
-  {
-    m_Repair.SetMinimumCells(goal.minimumCells);
-  }
+    , m_Merit(surfaces, volumes, goal, complex)
+    , m_Relaxation(complex, m_Mover, m_Merit, { goal.minimumCells, goal.maximumCells }, m_Execution)
+  {}
 
   void
-  SetDistance(double share)
+  Run(const Weights & weights)
   {
-    m_Bound.SetBound(share * m_Edge);
-    m_Repair.Forget();
-    m_Optimizer.MarkAll();
-  }
-
-  /** Whether anything was changed. */
-  bool
-  Pass()
-  {
-    const auto  mark = [this](const std::vector<IdType> & cells) { m_Optimizer.Mark(cells); };
-    std::size_t changes = m_Repair.Run(m_Limit, mark);
-    changes += m_Optimizer.Run(m_Limit, m_Limit);
-    if (changes > 0)
+    m_Merit.SetWeights(weights.surfaces, weights.floors);
+    m_Relaxation.Forget();
+    for (int i = 0; i < Sweeps; ++i)
     {
-      FlipParameters flips;
-      flips.targetAngle = FlippedAngle;
-      flips.minimumCells = m_Goal.minimumCells;
-      const auto note = [&mark](const FlipResult & flip) { mark(flip.created); };
-      ImproveByFlips(m_Complex, flips, note, nullptr, m_Execution.Silent());
+      this->Sweep();
     }
-    return changes > 0;
-  }
-
-  PointMover &
-  Mover()
-  {
-    return m_Mover;
+    for (double floors = 2.0 * weights.floors; floors <= weights.largestFloors; floors *= 2.0)
+    {
+      const std::vector<IdType> below = m_Goal.floors.FindBelow(m_Complex);
+      if (below.empty())
+      {
+        return;
+      }
+      m_Merit.SetWeights(weights.surfaces, floors);
+      m_Relaxation.Forget(below);
+      this->Sweep();
+    }
   }
 
 private:
+  void
+  Sweep()
+  {
+    m_Relaxation.Sweep();
+    FlipParameters flips;
+    flips.targetAngle = FlippedAngle;
+    flips.minimumCells = m_Goal.minimumCells;
+    flips.cellCount = m_Complex.AliveCells() < m_Goal.maximumCells ? FlipCellCount::Any : FlipCellCount::NotMore;
+    ImproveByFlips(m_Complex, flips, {}, nullptr, m_Execution);
+  }
+
   TetraComplex &    m_Complex;
-  const Execution & m_Execution;
   const AngleGoal & m_Goal;
-  double            m_Edge; ///< mean of the boundary, mm
+  Execution         m_Execution;
   SurfaceBound      m_Bound;
   PointMover        m_Mover;
-  PointOptimizer    m_Optimizer;
-  MeshRepair        m_Repair;
-  CosineLimit       m_Limit;
+  AngleMerit        m_Merit;
+  AngleRelaxation   m_Relaxation;
 };
 } // namespace
 
-std::size_t
-AngleFloors::CountBelow(const TetraComplex & complex) const
+std::vector<IdType>
+AngleFloors::FindBelow(const TetraComplex & complex) const
 {
-  std::size_t count = 0;
+  std::vector<IdType> below;
   for (IdType t = 0; t < complex.Size(); ++t)
   {
-    count += complex.IsAlive(t) && CellCosine(complex, t) > std::cos(this->Of(complex.Region(t))) ? 1 : 0;
+    if (complex.IsAlive(t) && CellCosine(complex, t) > std::cos(this->Of(complex.Region(t))))
+    {
+      below.push_back(t);
+    }
   }
-  return count;
+  return below;
 }
 
 AngleImprovement::AngleImprovement(const TetraComplex & finest)
@@ -103,35 +113,16 @@ AngleImprovement::AngleImprovement(const TetraComplex & finest)
 bool
 AngleImprovement::Run(TetraComplex & complex, const AngleGoal & goal, const Execution & execution) const
 {
-  const AngleFloors & floors = goal.floors;
-  if (floors.CountBelow(complex) == 0)
+  const TetraComplex before = complex;
+  Improver           improver(complex, m_Surfaces, m_Volumes, goal, execution);
+  for (const Weights & weights : Steps)
   {
-    return false;
+    improver.Run(weights);
   }
-  bool                     changed = false;
-  VolumeKeeper::Parameters keep;
-  keep.cosineFloor = std::cos(std::max(floors.cortical, floors.other));
-  keep.slack = VolumeSlack * goal.volumeChange;
-  Improver improver(complex, m_Surfaces, goal, execution);
-  for (const double distance : Distances)
+  if (m_Volumes.LargestChangeTo(complex) > std::max(goal.volumeChange, m_Volumes.LargestChangeTo(before)))
   {
-    improver.SetDistance(distance);
-    for (int pass = 0; pass < Passes && floors.CountBelow(complex) > 0; ++pass)
-    {
-      const TetraComplex before = complex;
-      if (!improver.Pass())
-      {
-        break;
-      }
-      m_Volumes.Restore(complex, improver.Mover(), keep);
-      if (m_Volumes.LargestChange(complex) > std::max(goal.volumeChange, m_Volumes.LargestChange(before)))
-      {
-        complex = before;
-        return changed;
-      }
-      changed = true;
-    }
+    complex = before;
   }
-  return changed;
+  return complex.Clock() != before.Clock();
 }
 } // namespace bone

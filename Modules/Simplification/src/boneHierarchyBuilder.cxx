@@ -137,13 +137,18 @@ HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution 
   }
   CollapseBy(floors, static_cast<IdType>(FlipAhead * target), level, execution.Part(0.0, 0.9));
   m_Collapser->Flip(LevelFlipAngle, FlipCellCount::NotMore, target, execution);
+  CollapseBy(floors, target, level, execution.Part(0.9, 1.0));
+  m_Collapser->Flip(LevelFlipAngle, FlipCellCount::Same, target, execution);
   if (m_ImproveAngles)
   {
     m_Collapser->ImproveAngles(target, execution.Silent());
-    floors.insert(floors.begin(), wanted);
+    if (m_Collapser->Complex().AliveCells() > target)
+    {
+      // The bound on volumes ended it, and regions have their volumes again.
+      CollapseBy(floors, target, level, execution.Silent());
+      m_Collapser->ImproveAngles(target, execution.Silent());
+    }
   }
-  CollapseBy(floors, target, level, execution.Part(0.9, 1.0));
-  m_Collapser->Flip(LevelFlipAngle, FlipCellCount::Same, target, execution);
   return m_Collapser->Complex().AliveCells() <= target;
 }
 

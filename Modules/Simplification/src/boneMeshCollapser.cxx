@@ -39,6 +39,8 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   // Faces will grow by some three times.
   , m_FirstEdge(MeanBoundaryEdge(m_Complex))
   , m_Grid(2.0 * m_FirstEdge)
+  , m_Volumes(m_Complex)
+  , m_VolumeErrors(m_Volumes.Size(), 0.0)
   , m_State(mesh.points.size(), State::Gone)
   , m_Dirty(mesh.points.size(), 1)
   , m_Target(mesh.points.size(), -1)
@@ -58,33 +60,14 @@ MeshCollapser::MeshCollapser(const MeshArrays &              mesh,
   {
     m_Envelope.emplace(m_Complex);
   }
-  const auto & p = m_Complex.Points();
-  for (IdType t = 0; t < m_Complex.Size(); ++t)
-  {
-    const Id4 &       c = m_Complex.Cell(t);
-    const std::size_t region = RegionOf(m_Complex.Region(t));
-    if (region == m_Regions.size())
-    {
-      m_Regions.push_back({ m_Complex.Region(t), 0.0, 0.0 });
-    }
-    m_Regions[region].volume += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
-  }
   FillGrid();
-  for (IdType v = 0; v < static_cast<IdType>(p.size()); ++v)
+  for (IdType v = 0; v < static_cast<IdType>(mesh.points.size()); ++v)
   {
     if (!m_Complex.Star(v).empty() && m_Complex.Dimension(v) > 0)
     {
       m_State[v] = State::Queued;
     }
   }
-}
-
-std::size_t
-MeshCollapser::RegionOf(int label) const
-{
-  const auto at =
-    std::find_if(m_Regions.begin(), m_Regions.end(), [label](const Region & r) { return r.label == label; });
-  return static_cast<std::size_t>(at - m_Regions.begin());
 }
 
 /** What v would do as things are. */
@@ -145,9 +128,9 @@ MeshCollapser::Commit(IdType v, IdType w)
   double              unused = 0.0;
   std::vector<double> volumes;
   Rate(v, w, 0.0, { 1.0, 1.0 }, volumes, unused);
-  for (std::size_t r = 0; r < m_Regions.size(); ++r)
+  for (std::size_t r = 0; r < volumes.size(); ++r)
   {
-    m_Regions[r].error += volumes[r];
+    m_VolumeErrors[r] += volumes[r];
   }
   const bool onSurface = m_Complex.Dimension(v) < 3;
   if (onSurface)
@@ -391,16 +374,20 @@ MeshCollapser::WantedAngles() const
 }
 
 void
-MeshCollapser::ImproveAngles(IdType minimumCells, const Execution & execution)
+MeshCollapser::ImproveAngles(IdType target, const Execution & execution)
 {
-  SetFloors(WantedAngles());
   std::vector<Id4> cells;
   for (IdType t = 0; t < m_Complex.Size(); ++t)
   {
     cells.push_back(m_Complex.Cell(t));
   }
   const std::vector<Vector3> points = m_Complex.Points();
-  if (!m_Improvement->Run(m_Complex, { m_Floors, m_Parameters.maximumVolumeChange, minimumCells }, execution))
+  AngleGoal                  goal;
+  goal.floors = WantedAngles();
+  goal.volumeChange = m_Parameters.maximumVolumeChange;
+  goal.minimumCells = target;
+  goal.maximumCells = std::max(target, m_Complex.AliveCells());
+  if (!m_Improvement->Run(m_Complex, goal, execution))
   {
     return;
   }
@@ -416,26 +403,8 @@ MeshCollapser::ImproveAngles(IdType minimumCells, const Execution & execution)
   m_Densities.Distribute(m_Complex, execution);
   m_SurfaceSamples.Distribute(m_Complex);
   FillGrid();
-  MeasureVolumes();
+  m_VolumeErrors = m_Volumes.ChangesTo(m_Complex);
   RequeueAll();
-}
-
-void
-MeshCollapser::MeasureVolumes()
-{
-  const auto & p = m_Complex.Points();
-  for (Region & region : m_Regions)
-  {
-    region.error = -region.volume;
-  }
-  for (IdType t = 0; t < m_Complex.Size(); ++t)
-  {
-    if (m_Complex.IsAlive(t))
-    {
-      const Id4 & c = m_Complex.Cell(t);
-      m_Regions[RegionOf(m_Complex.Region(t))].error += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
-    }
-  }
 }
 
 /** Where much has changed without a note of it. */

@@ -8,6 +8,7 @@
 #include "boneCellFits.h"
 #include "boneDensitySamples.h"
 #include "boneExecution.h"
+#include "boneRegionVolumes.h"
 #include "boneSurfaceEnvelope.h"
 #include "boneSurfaceGrid.h"
 #include "boneSurfaceSamples.h"
@@ -53,11 +54,10 @@ public:
   std::size_t
   Flip(double angle, FlipCellCount cellCount, IdType minimumCells, const Execution & execution);
 
-  /** \brief Raises the angles that are below those wanted, as far as the bound on volumes lets it (\ref
-   * AngleImprovement), collapsing edges where there are more cells than `minimumCells`, and keeps to those wanted from
-   * then on. \pre There is no bound on distances. */
+  /** Gives cells the angles wanted (\ref AngleImprovement), and neither makes more cells than there are nor fewer than
+   * `target`. \pre There is no bound on distances. */
   void
-  ImproveAngles(IdType minimumCells, const Execution & execution);
+  ImproveAngles(IdType target, const Execution & execution);
 
   /** Dihedral angles that collapses leave from now on where they are not smaller already; first those of the
    * parameters.
@@ -138,12 +138,6 @@ private:
     IdType w{ -1 };
     Counts refused{}; ///< targets by \ref MeshOperation
   };
-  struct Region
-  {
-    int    label;
-    double volume;
-    double error;
-  };
   /** Largest cosines of dihedral angles that cells may have. */
   struct Limits
   {
@@ -192,12 +186,8 @@ private:
   Requeue();
   void
   NoteWhyParked(const Execution & execution);
-  std::size_t
-  RegionOf(int label) const;
   void
   FillGrid();
-  void
-  MeasureVolumes();
   void
   RequeueAll();
 
@@ -209,7 +199,8 @@ private:
   TetraCollapseParameters                 m_Parameters;
   double                                  m_FirstEdge; ///< of the finest boundary, mean, mm
   SurfaceGrid                             m_Grid;
-  std::vector<Region>                     m_Regions;
+  RegionVolumes                           m_Volumes;      ///< of the finest level
+  std::vector<double>                     m_VolumeErrors; ///< change of each since then, mm^3
   std::priority_queue<Entry>              m_Queue;
   std::vector<State>                      m_State;
   std::vector<char>                       m_Dirty;

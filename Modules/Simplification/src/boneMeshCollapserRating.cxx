@@ -77,9 +77,9 @@ double
 MeshCollapser::EquilateralEdge() const
 {
   double volume = 0.0;
-  for (const Region & region : m_Regions)
+  for (std::size_t r = 0; r < m_Volumes.Size(); ++r)
   {
-    volume += region.volume;
+    volume += m_Volumes[r];
   }
   return std::cbrt(6.0 * std::sqrt(2.0) * volume / m_Complex.AliveCells());
 }
@@ -91,16 +91,15 @@ MeshCollapser::CheckVolume(IdType v, const std::vector<double> & volumes, double
   {
     return MeshOperation::Done;
   }
-  for (std::size_t r = 0; r < m_Regions.size(); ++r)
+  for (std::size_t r = 0; r < volumes.size(); ++r)
   {
-    const Region & region = m_Regions[r];
-    const double   after = region.error + volumes[r];
+    const double before = m_VolumeErrors[r], after = before + volumes[r];
     // A change that brings a region back is always allowed.
-    if (std::abs(after) > m_Parameters.maximumVolumeChange * region.volume && std::abs(after) > std::abs(region.error))
+    if (std::abs(after) > m_Parameters.maximumVolumeChange * m_Volumes[r] && std::abs(after) > std::abs(before))
     {
       return MeshOperation::Volume;
     }
-    cost += m_Parameters.volumeWeight * (after * after - region.error * region.error) / region.volume;
+    cost += m_Parameters.volumeWeight * (after * after - before * before) / m_Volumes[r];
   }
   return MeshOperation::Done;
 }
@@ -115,12 +114,12 @@ MeshCollapser::Rate(IdType                v,
 {
   const auto & p = m_Complex.Points();
   double       worst = -1.0, volume = 0.0, deficit = 0.0, longest = 0.0;
-  volumes.assign(m_Regions.size(), 0.0);
+  volumes.assign(m_Volumes.Size(), 0.0);
   for (IdType t : m_Complex.Star(v))
   {
     Id4          c = m_Complex.Cell(t);
     const double before = SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
-    double &     change = volumes[RegionOf(m_Complex.Region(t))];
+    double &     change = volumes[m_Volumes.NumberOf(m_Complex.Region(t))];
     change -= before;
     if (m_Complex.Has(t, w))
     {

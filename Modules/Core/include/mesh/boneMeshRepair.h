@@ -26,20 +26,7 @@ public:
    * that an earlier call could do nothing for and at whose points nothing has changed since. `changed` is called with
    * the cells that came or changed. Returns the number of operations. */
   std::size_t
-  Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed)
-  {
-    return this->Run([limit](IdType) { return limit; }, changed);
-  }
-  /** The same with a limit for each cell. */
-  std::size_t
-  Run(const CosineLimit & limit, const std::function<void(const std::vector<IdType> &)> & changed);
-
-  /** Run() collapses no edges where there are no more cells than this; default 0. */
-  void
-  SetMinimumCells(IdType cells)
-  {
-    m_MinimumCells = cells;
-  }
+  Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed);
 
   /** Cells that nothing could be done for are tried again: to be called where the mover's bound has changed. */
   void
@@ -77,7 +64,6 @@ private:
   TetraComplex & m_Complex;
   PointMover &   m_Mover;
   double         m_SquaredBound;
-  IdType         m_MinimumCells{ 0 };
   /** By slots of cells: the complex' clock when nothing could be done, 0 for never. */
   std::vector<std::uint32_t> m_Refused;
 };

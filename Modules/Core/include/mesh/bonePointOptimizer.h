@@ -8,18 +8,14 @@
 #include "boneSurfaceTarget.h"
 #include "boneTetraFlips.h"
 
-#include <functional>
 #include <vector>
 
 namespace bone
 {
-/** The largest cosine of a dihedral angle that a cell is to have. */
-using CosineLimit = std::function<double(IdType)>;
-
-/** Living cells whose smallest dihedral angle has a cosine above their limit, the worst first; each after the negative
+/** Living cells whose smallest dihedral angle has a cosine above the limit, the worst first; each after the negative
  * of that cosine. */
 std::vector<std::pair<double, IdType>>
-FindWorstCells(const TetraComplex & complex, const CosineLimit & limit);
+FindWorstCells(const TetraComplex & complex, double limit);
 
 /** \class PointOptimizer
  * \brief Moves the points of the worst cells so that the smallest dihedral angle around each rises.
@@ -34,13 +30,7 @@ public:
   /** Moves the points of all cells whose smallest dihedral angle has a cosine above `limit`, points of surfaces where
    * it is above `surfaceLimit`; the worst first, each once. Returns the number of moves. */
   std::size_t
-  Run(double limit, double surfaceLimit)
-  {
-    return this->Run([limit](IdType) { return limit; }, [surfaceLimit](IdType) { return surfaceLimit; });
-  }
-  /** The same with limits for each cell. */
-  std::size_t
-  Run(const CosineLimit & limit, const CosineLimit & surfaceLimit);
+  Run(double limit, double surfaceLimit);
 
   /** Moves one point; whether it got better. */
   bool

@@ -32,10 +32,6 @@ public:
     Limit  limit{};            ///< none: points may go anywhere
   };
 
-  /** The largest share by which a region's volume differs from what it was. */
-  double
-  LargestChange(const TetraComplex & complex) const;
-
   /** Moves surface points until what each surface encloses is as large as it was, but for the slack. */
   void
   Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const;

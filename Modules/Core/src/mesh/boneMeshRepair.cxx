@@ -23,19 +23,19 @@ MeshRepair::MeshRepair(TetraComplex & complex, PointMover & mover, double distan
 {}
 
 std::size_t
-MeshRepair::Run(const CosineLimit & limit, const std::function<void(const std::vector<IdType> &)> & changed)
+MeshRepair::Run(double limit, const std::function<void(const std::vector<IdType> &)> & changed)
 {
   std::size_t         count = 0;
   std::vector<IdType> cells;
   for (const auto & candidate : FindWorstCells(m_Complex, limit))
   {
     const IdType t = candidate.second;
-    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit(t)) || IsRefused(t))
+    if (!m_Complex.IsAlive(t) || !(CellCosine(m_Complex, t) > limit) || IsRefused(t))
     {
       continue;
     }
     cells.clear();
-    if (FlipSurface(t, cells) || (m_Complex.AliveCells() > m_MinimumCells && CollapseAt(t, cells)))
+    if (FlipSurface(t, cells) || CollapseAt(t, cells))
     {
       ++count;
       changed(cells);

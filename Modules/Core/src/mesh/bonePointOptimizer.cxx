@@ -9,7 +9,7 @@
 namespace bone
 {
 std::vector<std::pair<double, IdType>>
-FindWorstCells(const TetraComplex & complex, const CosineLimit & limit)
+FindWorstCells(const TetraComplex & complex, double limit)
 {
   std::vector<std::pair<double, IdType>> worst;
   for (IdType t = 0; t < complex.Size(); ++t)
@@ -19,7 +19,7 @@ FindWorstCells(const TetraComplex & complex, const CosineLimit & limit)
       continue;
     }
     const double cosine = CellCosine(complex, t);
-    if (cosine > limit(t))
+    if (cosine > limit)
     {
       worst.emplace_back(-cosine, t);
     }
@@ -50,14 +50,14 @@ PointOptimizer::PointOptimizer(TetraComplex & complex, PointMover & mover, const
 }
 
 std::size_t
-PointOptimizer::Run(const CosineLimit & limit, const CosineLimit & surfaceLimit)
+PointOptimizer::Run(double limit, double surfaceLimit)
 {
   std::size_t       moves = 0;
   std::vector<char> seen(m_Complex.Points().size(), 0);
   m_Dirty.resize(seen.size(), 1);
   for (const auto & candidate : FindWorstCells(m_Complex, limit))
   {
-    const int least = -candidate.first > surfaceLimit(candidate.second) ? 1 : 3;
+    const int least = -candidate.first > surfaceLimit ? 1 : 3;
     for (IdType p : m_Complex.Cell(candidate.second))
     {
       if (m_Dirty[p] && !seen[p] && m_Complex.Dimension(p) >= least)

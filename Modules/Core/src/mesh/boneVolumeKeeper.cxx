@@ -89,26 +89,6 @@ VolumeKeeper::VolumesWithin(const TetraComplex & complex)
   return volumes;
 }
 
-double
-VolumeKeeper::LargestChange(const TetraComplex & complex) const
-{
-  const std::map<int, double> now = VolumesWithin(complex);
-  const auto                  present = [&now](int region) {
-    const auto found = now.find(region);
-    return found == now.end() ? 0.0 : found->second;
-  };
-  double largest = 0.0;
-  for (auto at = m_Volumes.begin(); at != m_Volumes.end(); ++at)
-  {
-    const auto   next = std::next(at);
-    const bool   innermost = next == m_Volumes.end();
-    const double before = at->second - (innermost ? 0.0 : next->second);
-    const double after = present(at->first) - (innermost ? 0.0 : present(next->first));
-    largest = std::max(largest, std::abs(after - before) / before);
-  }
-  return largest;
-}
-
 void
 VolumeKeeper::Restore(TetraComplex & complex, PointMover & mover, const Parameters & parameters) const
 {
