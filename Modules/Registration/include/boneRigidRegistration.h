@@ -40,14 +40,14 @@ struct RigidRegistrationResult
   bool                        converged{ false }; ///< the refinement ended before its steps ran out
   RegistrationQuality         quality{ RegistrationQuality::Failed };
   /** How much the cost rises, on average over the six motions, where the model is moved by 8 mm, over the cost. A wrong
-   * minimum is flat: with two views, on four bones, true poses have 0.41 and more, wrong ones 0.42 and less, most
-   * 0.28. One view does not always tell: wrong poses of a long bone have up to 1 (see
-   * ambiguous). */
+   * minimum is flat: with two views, on four bones, true poses have 0.42 and more, wrong ones that no loose motion gives
+   * away (see leastDistinctness) 0.32 and less; 0.38 is Ok. One view does not always tell: wrong poses of a long bone
+   * have up to 1 (see ambiguous); 0.45 is Ok there. */
   double distinctness{ 0.0 };
   /** The same of the one among twelve motions, each way along and about the model's principal axes, that raises the
    * cost least. A pose that edges of something else hold in place, such as those of a cropped CT, slides along them:
-   * with two views, on seven bones, wrong poses with a distinctness of 0.45 and more had at most 0.26 of it, true ones
-   * at least 0.31. A wrong one is Suspect by that, whatever its distinctness. One view has no hold on its depth anyway.
+   * with two views, on seven bones, wrong poses with a distinctness of 0.38 and more had at most 0.26 of it, true ones
+   * at least 0.30. A wrong one is Suspect by that, whatever its distinctness. One view has no hold on its depth anyway.
    */
   double leastDistinctness{ 0.0 };
   int    searches{ 0 };

@@ -110,7 +110,7 @@ Judge(const RigidCost &         cost,
       RigidRegistrationResult & result)
 {
   constexpr double     away = 8.0; // mm
-  constexpr double     ofTrue = 0.45;
+  constexpr double     ofTrue = 0.38, ofTrueFromOneView = 0.45;
   constexpr double     ofWrong = 0.3;
   std::vector<Vector6> motions(9, Vector6::Zero()); // translations, turns about the geometry's and the principal axes
   for (int k = 0; k < 3; ++k)
@@ -132,7 +132,8 @@ Judge(const RigidCost &         cost,
   };
   result.distinctness = rise(mean);
   result.leastDistinctness = rise(least);
-  result.quality = result.distinctness >= ofTrue    ? RegistrationQuality::Ok
+  const double enough = result.costs.size() > 1 ? ofTrue : ofTrueFromOneView;
+  result.quality = result.distinctness >= enough    ? RegistrationQuality::Ok
                    : result.distinctness >= ofWrong ? RegistrationQuality::Suspect
                                                     : RegistrationQuality::Failed;
   if (result.beyondSearch || result.ambiguous || HasLooseMotion(result))

@@ -53,12 +53,36 @@ TEST(RigidSearch, WhereAllIsHopelessTheBestIsRefinedToTheEnd)
   EXPECT_EQ(result.distinctness, judged.distinctness);
 }
 
+TEST(RigidSearch, OneViewMustBeMoreDistinctThanTwo)
+{
+  // Noise takes the distinctness from where both are ok to where neither is.
+  const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
+  std::size_t     between = 0;
+  for (float noise = 0.0f; noise < 1.0f; noise += 0.04f)
+  {
+    std::vector<RadiographView> views = TwoXRays(Body(12), truth);
+    AddNoise(views, noise);
+    for (const bool single : { false, true })
+    {
+      views.resize(single ? 1 : 2);
+      RigidRegistrationResult judged;
+      judged.pose = truth;
+      JudgePose(Body(12), views, Parameters(1), Execution(), judged);
+      const bool loose = !single && judged.leastDistinctness < 0.28 * judged.distinctness;
+      const bool ok = judged.distinctness >= (single ? 0.45 : 0.38) && !loose;
+      EXPECT_EQ(judged.quality == RegistrationQuality::Ok, ok) << judged.distinctness << (single ? ", one view" : "");
+      between += judged.distinctness >= 0.38 && judged.distinctness < 0.45 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(between, 3u);
+}
+
 TEST(RigidSearch, APoseThatIsNotDistinctIsOkWhenThreeSearchesFoundIt)
 {
   const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
   // Noise makes the true pose less distinct.
   std::vector<RadiographView> views = TwoXRays(Body(12), truth);
-  AddNoise(views, 0.5f);
+  AddNoise(views, 0.62f);
   RigidRegistrationResult judged;
   judged.pose = truth;
   JudgePose(Body(12), views, Parameters(1), Execution(), judged);
