@@ -7,6 +7,7 @@
 #include "boneTetraFlips.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace bone

@@ -20,6 +20,8 @@ constexpr double SmallestStride = 0.005;
 constexpr double FlipAhead = 1.02;
 /** Share of the wanted angles that collapses keep to while they can. */
 constexpr double SoftShare = 0.6;
+/** Cells are collapsed again after angles were improved this often at the most. */
+constexpr int MostRounds = 3;
 /** How much a level's surfaceError may be too low, mm. */
 constexpr double SurfaceTolerance = 0.01;
 
@@ -142,9 +144,9 @@ HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution 
   if (m_ImproveAngles)
   {
     m_Collapser->ImproveAngles(target, execution.Silent());
-    if (m_Collapser->Complex().AliveCells() > target)
+    for (int i = 0; i < MostRounds && m_Collapser->Complex().AliveCells() > target; ++i)
     {
-      // The bound on volumes ended it, and regions have their volumes again.
+      // The bound on volumes ended collapses, and regions have their volumes again.
       CollapseBy(floors, target, level, execution.Silent());
       m_Collapser->ImproveAngles(target, execution.Silent());
     }

@@ -145,7 +145,7 @@ PointStar::FindMove()
     for (const Vector3 & direction : directions)
     {
       Vector3 x = from + step * direction;
-      if (m_Dimension == 1 || m_IsFlat)
+      if (m_Dimension == 1)
       {
         x = m_Merit.Finest().Project(m_Complex, m_Point, x);
       }

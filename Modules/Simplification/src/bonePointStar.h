@@ -11,7 +11,7 @@ namespace bone
 /** \class PointStar
  * \brief The cells and triangles around a point of a complex: what they are worth by its place.
  *
- * A copy: the complex may change, and several threads may each have their own. */
+ * Places are tried on a copy of the cells, so that several threads may try those of several points at once. */
 class PointStar
 {
 public:

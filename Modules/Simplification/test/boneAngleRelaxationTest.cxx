@@ -175,7 +175,8 @@ TEST(AngleMerit, VolumesCountByTheSquaresOfTheirBounds)
 {
   const Drawn body(3);
   AngleMerit  merit(body.surfaces, body.volumes, Goal(), body.complex);
-  const auto  changes = body.volumes.ChangesTo(body.complex);
+  merit.SetWeights(0.0, 4.0);
+  const auto changes = body.volumes.ChangesTo(body.complex);
   ASSERT_EQ(changes.size(), 2u);
   std::vector<double> back, none(2, 0.0);
   double              cost = 0.0;
