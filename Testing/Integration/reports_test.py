@@ -148,38 +148,47 @@ class Reports(TestCase):
         self.assertEqual(self.made(scripts, environment), ["one", "two"])
         self.assertGreater(len(os.listdir("work")), 1)
 
-    def fake(self, build, differs=""):
-        """A build tree whose bonetk writes its arguments to what it is to write, and otherwise where a command is named."""
+    def fake(self, build, commit, differs="nothing"):
+        """A build tree of the commit whose bonetk writes its arguments to what it is to write; something else where a command is named."""
         os.makedirs(f"{build}/Apps/bonetk")
         program = pathlib.Path(f"{build}/Apps/bonetk/bonetk")
-        program.write_text('#!/bin/sh\nwhile [ "$1" != -o ]; do all="$all $1"; shift; done\n'
-                           f'case "$all" in *{differs or "nothing"}*) all="$all changed";; esac\necho "\\"$all\\"" > "$2"\n')
+        program.write_text(f'#!/bin/sh\n[ "$1" != --version ] || exec echo "commit     {commit} of 2026-01-01"\n'
+                           'while [ "$1" != -o ]; do all="$all $1"; shift; done\n'
+                           f'case "$all" in *{differs}*) all="$all changed";; esac\necho "\\"$all\\"" > "$2"\n')
         program.chmod(0o755)
 
     def test_reports_of_programs_that_do_the_same(self):
         pages, scripts = self.copy()
         (pages / "README.md").write_text(LIST)
-        for name in ("one", "two"):
-            (pages / f"{name}.md").write_text("# Page\n\nMade by `Testing/Validation/one.sh` at commit 0123456 on a machine.\n")
         for module in ("Some", "Other", "Third"):
             os.makedirs(f"Modules/{module}")
             pathlib.Path(f"Modules/{module}/CMakeLists.txt").write_text(f"bonetk_module({module})\n")
-        now = self.committed("Apps/a.cxx")
-        for build, differs in (("old", ""), ("new", ""), ("other", "thickness")):
-            self.fake(build, differs)
+        first, second, now = (self.committed(file) for file in ("Apps/a.cxx", "Modules/Other/b.cxx", "Modules/Some/c.cxx"))
+        for name in ("one", "two"):
+            (pages / f"{name}.md").write_text(f"# Page\n\nMade by `Testing/Validation/one.sh` at commit {first} on a machine.\n")
+        long = {commit: run("git", "rev-parse", "--short=12", commit)[1].strip() for commit in (second, now)}
+        for build, commit, differs in (("old", second, "nothing"), ("new", now, "nothing"), ("other", now, "thickness")):
+            self.fake(build, long[commit], differs)
         environment = dict(os.environ, BONETK_DATA=".")
-        code, out, err = run(scripts / "unchanged.py", "old", "other", "--confirm", "one", env=environment)
-        self.assertEqual((code, err), (1, "1 files differ\n"))
+
+        def unchanged(old, new, page):
+            code, out, err = run(scripts / "unchanged.py", old, new, "--confirm", page, env=environment)
+            return code, out, err.strip()
+
+        code, out, err = unchanged("old", "other", "one")
+        self.assertEqual((code, err), (1, "1 files differ"))
         self.assertRegex(out, "\nbonetk thickness .* -> thickness.vtp\n")
         self.assertEqual(out.count("-> the same\n"), out.count("\n") - 1)
-        self.assertIn("at commit 0123456 on ", (pages / "one.md").read_text())
-        code, _, err = run(scripts / "unchanged.py", "old", "new", "--confirm", "one", env=environment)
-        self.assertEqual((code, err), (0, ""))
-        self.assertIn(f"at commit {now} (made at 0123456, what it measures is the same) on ", (pages / "one.md").read_text())
-        self.assertIn("at commit 0123456 on ", (pages / "two.md").read_text())
-        code, _, err = run(scripts / "unchanged.py", "old", "new", "--confirm", "three", env=environment)
-        self.assertEqual(code, 2)
-        self.assertIn("there is no report three", err)
+        for old, new, page, says in (("old", "old", "one", "not of the sources as they are"), ("old", "new", "two", "two measured other programs"),
+                                     ("old", "new", "three", "there is no report three")):
+            code, _, err = unchanged(old, new, page)
+            self.assertEqual(code, 1)
+            self.assertIn(says, err)
+        for name in ("one", "two"):
+            self.assertIn(f"at commit {first} on ", (pages / f"{name}.md").read_text())
+        self.assertEqual(unchanged("old", "new", "one")[::2], (0, ""))
+        self.assertIn(f"at commit {now} (made at {first}, what it measures is the same) on ", (pages / "one.md").read_text())
+        self.assertIn(f"at commit {first} on ", (pages / "two.md").read_text())
 
 
 if __name__ == "__main__":

@@ -63,11 +63,16 @@ def measured():
     return {name: modules.split(", ") for name, modules in rows}
 
 
-def is_fresh(name, modules):
-    """Whether nothing that the report measures has changed since the commit that it names."""
+def is_same(modules, *commits):
+    """Whether these modules' programs are the same at two commits, or at one and in the folder."""
+    return git("diff", "--quiet", *commits, "--", *sources(modules)).returncode == 0
+
+
+def is_fresh(name, modules, *since):
+    """Whether nothing that the report measures has changed from the commit that it names to another, or to what is in the folder."""
     page = PAGES / f"{name}.md"
     made = AT.search(page.read_text()) if page.exists() else None
-    return made is not None and git("diff", "--quiet", made[2], "--", *sources(modules)).returncode == 0
+    return made is not None and is_same(modules, made[2], *since)
 
 
 def stale():

@@ -4,14 +4,15 @@
     BONETK_DATA=DATA Testing/Validation/unchanged.py OLD NEW [--confirm REPORT...]
 
 For a change of the programs that is not to move any figure: where all is the same, the reports named with --confirm are given the present
-commit as report.py --confirm gives it, without being made again. Reports whose figures do move are made again; times are not compared.
-Ends with 1 where something differs. Some 25 minutes on two cores.
+commit as report.py --confirm gives it, without being made again: NEW must be of the sources as they are, OLD of what the reports measured.
+Reports whose figures do move are made again; times are not compared. Ends with 1 where something differs. Some 25 minutes on two cores.
 """
 import argparse
 import filecmp
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -66,6 +67,25 @@ def commands(data):
     yield "register", "deform", "atlas.h5", *XRAY, "-o", "deform"
 
 
+def commit_of(bonetk):
+    version = subprocess.run([bonetk, "--version"], capture_output=True, text=True, check=True).stdout
+    found = re.search(r"^commit +([0-9a-f]{12}) of \S+$", version, re.MULTILINE)
+    return found[1] if found else sys.exit(f"{bonetk} does not say of which commit it is, or is of one with changes")
+
+
+def check(programs, reports):
+    """That what is compared is what the reports measured, and what there is now."""
+    old, new = map(commit_of, programs)
+    if not report.is_same(["all"], new):
+        sys.exit(f"{programs[1]} is of commit {new}, and not of the sources as they are: build it again")
+    measured = report.measured()
+    for name in reports:
+        if name not in measured:
+            sys.exit(f"there is no report {name}")
+        if not report.is_fresh(name, measured[name], old):
+            sys.exit(f"{name} measured other programs than {programs[0]}, which is of commit {old}")
+
+
 def lasting(found):
     """A report's content without what is another from run to run."""
     if isinstance(found, dict):
@@ -79,10 +99,11 @@ def is_same(first, second):
     return filecmp.cmp(first, second, shallow=False)
 
 
-def differences(folders):
-    """Files that differ, or that one folder lacks."""
+def differences(folders, seen):
+    """Files that differ, or that one folder lacks, but for those seen before."""
     names = [{path.relative_to(folder) for path in folder.rglob("*") if path.is_file() and path.suffix not in LEFT_OUT} for folder in folders]
-    for name in sorted(names[0] | names[1]):
+    for name in sorted((names[0] | names[1]) - seen):
+        seen.add(name)
         if not (name in names[0] and name in names[1] and is_same(*(folder / name for folder in folders))):
             yield name
 
@@ -93,26 +114,24 @@ def main():
     parser.add_argument("--confirm", nargs="+", default=[], metavar="REPORT")
     options = parser.parse_args()
     data = os.environ.get("BONETK_DATA") or parser.error("BONETK_DATA names no folder of data")
-    unknown = set(options.confirm) - set(report.measured())
-    if unknown:
-        parser.error(f"there is no report {min(unknown)}")
+    programs = [build.resolve() / "Apps" / "bonetk" / "bonetk" for build in options.builds]
+    check(programs, options.confirm)
     with tempfile.TemporaryDirectory() as name:
         folders = [pathlib.Path(name, which) for which in ("old", "new")]
         for folder in folders:
             folder.mkdir()
             (folder / "subjects.txt").write_text("femur_0/model_L2.vtu\nfemur_1/model_L2.vtu\nfemur_2/model_L2.vtu\n")
-        differ = []
+        seen, differ = set(), 0
         for command in commands(data):
-            for build, folder in zip(options.builds, folders):
-                bonetk = build.resolve() / "Apps" / "bonetk" / "bonetk"
+            for bonetk, folder in zip(programs, folders):
                 done = subprocess.run([bonetk, *command, "-q"], cwd=folder, capture_output=True, text=True, check=False)
                 if done.returncode != 0:
                     sys.exit(f"{bonetk} {' '.join(command)}: {done.stderr.strip()[-500:]}")
-            now = [found for found in differences(folders) if found not in differ]
-            differ += now
-            print("bonetk", *command, "->", ", ".join(map(str, now)) or "the same", flush=True)
+            found = list(differences(folders, seen))
+            differ += len(found)
+            print("bonetk", *command, "->", ", ".join(map(str, found)) or "the same", flush=True)
     if differ:
-        sys.exit(f"{len(differ)} files differ")
+        sys.exit(f"{differ} files differ")
     report.confirm(options.confirm)
 
 
