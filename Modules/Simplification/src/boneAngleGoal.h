@@ -36,7 +36,8 @@ struct AngleFloors
 /** What an \ref AngleImprovement is to reach, and to keep. */
 struct AngleGoal
 {
-  AngleFloors floors;
+  AngleFloors floors;              ///< what cells are to have
+  AngleFloors least;               ///< no angle falls both below these and below the smallest around the point or edge
   double      volumeChange{ 0.0 }; ///< largest share by which a region's volume may differ from the finest level's
   IdType      minimumCells{ 0 };   ///< flips make no fewer
   IdType      maximumCells{ std::numeric_limits<IdType>::max() }; ///< nor more

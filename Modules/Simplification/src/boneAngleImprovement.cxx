@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace bone
 {
@@ -91,20 +90,6 @@ private:
   AngleRelaxation   m_Relaxation;
 };
 } // namespace
-
-std::vector<IdType>
-AngleFloors::FindBelow(const TetraComplex & complex) const
-{
-  std::vector<IdType> below;
-  for (IdType t = 0; t < complex.Size(); ++t)
-  {
-    if (complex.IsAlive(t) && CellCosine(complex, t) > std::cos(this->Of(complex.Region(t))))
-    {
-      below.push_back(t);
-    }
-  }
-  return below;
-}
 
 AngleImprovement::AngleImprovement(const TetraComplex & finest)
   : m_Surfaces(finest, 0.0, 0)

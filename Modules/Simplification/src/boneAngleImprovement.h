@@ -18,9 +18,10 @@ namespace bone
  * they weigh more and come back. In each, the weight of cells below their floor is doubled until none is left. After
  * each sweep cells are flipped where an angle is below 25 degrees.
  *
- * Surfaces stay within a quarter of the boundary's mean edge length of what they were, both ways; a run that takes a
- * region's volume beyond its bound, and farther than it was, is taken back. A valid mesh stays valid, and its boundary
- * does not come to pass through itself. The result does not depend on the number of threads.
+ * No angle falls below the least that are allowed and what was there. Surfaces stay within a quarter of the boundary's
+ * mean edge length of what they were, both ways; a run that takes a region's volume beyond its bound, and farther than
+ * it was, is taken back. A valid mesh stays valid, and its boundary does not come to pass through itself. The result
+ * does not depend on the number of threads.
  *
  * Edges are not collapsed: at bad cells a collapse takes points of the surface that no move brings back. */
 class AngleImprovement

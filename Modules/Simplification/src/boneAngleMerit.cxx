@@ -45,6 +45,7 @@ AngleMerit::AngleMerit(const SurfaceTarget & finest,
   : m_Finest(finest)
   , m_Volumes(volumes)
   , m_Floors(goal.floors)
+  , m_Least(goal.least)
 {
   for (std::size_t r = 0; r < volumes.Size(); ++r)
   {

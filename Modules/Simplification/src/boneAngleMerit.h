@@ -8,6 +8,8 @@
 #include "boneRegionVolumes.h"
 #include "boneSurfaceTarget.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace bone
@@ -47,6 +49,12 @@ public:
   void
   AddToVolumes(const std::vector<double> & changes);
 
+  /** Largest cosine of a dihedral angle that a cell of a region may get, where the largest there is `worst`. */
+  double
+  LargestCosine(int region, double worst) const
+  {
+    return std::max(worst, std::cos(m_Least.Of(region)));
+  }
   /** Of a cell of a region by the cosine of its smallest dihedral angle. */
   double
   OfCell(double cosine, int region) const;
@@ -81,6 +89,7 @@ private:
   const SurfaceTarget & m_Finest;
   const RegionVolumes & m_Volumes;
   AngleFloors           m_Floors;
+  AngleFloors           m_Least;
   std::vector<double>   m_Bounds;  ///< of the regions' changes, mm^3
   std::vector<double>   m_Changes; ///< of the regions, mm^3
   double                m_SurfaceWeight{ 0.0 };

@@ -7,6 +7,7 @@
 #include "boneQualityMeasures.h"
 #include "boneTetraFlips.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bone
@@ -15,8 +16,8 @@ namespace
 {
 constexpr double MoveGain = 1e-3; ///< rad
 constexpr double FlipGain = 0.02; ///< rad
-/** Cosine of the smallest dihedral angle that cells of a flip may have in any case, rad: 2.5 degrees. */
-const double FlipCosine = std::cos(0.0436);
+/** Of PlanSurfaceFlip: new cells may be worse than the old ones, as long as they are positive. */
+constexpr double AnyCosine = 1.0;
 } // namespace
 
 AngleRelaxation::AngleRelaxation(TetraComplex &    complex,
@@ -107,7 +108,7 @@ AngleRelaxation::FlipAt(IdType a, double mean)
 bool
 AngleRelaxation::TryFlip(IdType a, IdType b, double mean)
 {
-  const SurfaceFlip plan = PlanSurfaceFlip(m_Complex, a, b, FlipCosine);
+  const SurfaceFlip plan = PlanSurfaceFlip(m_Complex, a, b, AnyCosine);
   const auto        more = static_cast<IdType>(plan.created.size()) - static_cast<IdType>(plan.removed.size());
   const IdType      cells = m_Complex.AliveCells() + more;
   if (plan.outcome != MeshOperation::Done || (more < 0 && cells < m_Count.least) || (more > 0 && cells > m_Count.most))
@@ -116,18 +117,25 @@ AngleRelaxation::TryFlip(IdType a, IdType b, double mean)
   }
   // A cell more or less is worth nothing in itself.
   const auto &        p = m_Complex.Points();
-  double              gain = 0.0;
+  double              gain = 0.0, worst = -1.0;
   std::vector<double> changes(m_Merit.Volumes().Size(), 0.0);
   for (IdType t : plan.removed)
   {
-    const Id4 & c = m_Complex.Cell(t);
-    gain -= m_Merit.OfCell(CellCosine(m_Complex, t), m_Complex.Region(t)) - mean;
+    const Id4 &  c = m_Complex.Cell(t);
+    const double cosine = CellCosine(m_Complex, t);
+    worst = std::max(worst, cosine);
+    gain -= m_Merit.OfCell(cosine, m_Complex.Region(t)) - mean;
     changes[m_Merit.Volumes().NumberOf(m_Complex.Region(t))] -= SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
   }
   for (std::size_t i = 0; i < plan.created.size(); ++i)
   {
-    const Id4 & c = plan.created[i];
-    gain += m_Merit.OfCell(LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]), plan.regions[i]) - mean;
+    const Id4 &  c = plan.created[i];
+    const double cosine = LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
+    if (cosine > m_Merit.LargestCosine(plan.regions[i], worst))
+    {
+      return false;
+    }
+    gain += m_Merit.OfCell(cosine, plan.regions[i]) - mean;
     changes[m_Merit.Volumes().NumberOf(plan.regions[i])] += SignedVolume(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
   }
   const auto [c, d] = plan.corners;

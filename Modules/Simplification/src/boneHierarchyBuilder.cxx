@@ -146,8 +146,13 @@ HierarchyBuilder::CollapseTo(IdType target, BuiltLevel & level, const Execution 
     m_Collapser->ImproveAngles(target, execution.Silent());
     for (int i = 0; i < MostRounds && m_Collapser->Complex().AliveCells() > target; ++i)
     {
-      // The bound on volumes ended collapses, and regions have their volumes again.
+      // Where the bound on volumes ended collapses, regions have their volumes again.
+      const std::size_t before = level.collapses;
       CollapseBy(floors, target, level, execution.Silent());
+      if (level.collapses == before)
+      {
+        break;
+      }
       m_Collapser->ImproveAngles(target, execution.Silent());
     }
   }

@@ -384,6 +384,7 @@ MeshCollapser::ImproveAngles(IdType target, const Execution & execution)
   const std::vector<Vector3> points = m_Complex.Points();
   AngleGoal                  goal;
   goal.floors = WantedAngles();
+  goal.least = LeastAngles();
   goal.volumeChange = m_Parameters.maximumVolumeChange;
   goal.minimumCells = target;
   goal.maximumCells = std::max(target, m_Complex.AliveCells());

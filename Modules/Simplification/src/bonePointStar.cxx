@@ -3,7 +3,9 @@
  *=========================================================================*/
 #include "bonePointStar.h"
 
+#include "bonePointOptimizer.h"
 #include "boneQualityMeasures.h"
+#include "boneTetraFlips.h"
 
 #include <Eigen/Geometry>
 
@@ -33,16 +35,20 @@ PointStar::PointStar(const TetraComplex & complex, const AngleMerit & merit, IdT
   , m_Point(p)
   , m_Dimension(complex.Dimension(p))
   , m_Start(complex.Points()[p])
+  , m_VolumeGradients(merit.Volumes().Size(), Vector3::Zero())
+  , m_Changes(merit.Volumes().Size(), 0.0)
 {
   const auto & points = complex.Points();
   for (IdType t : complex.Star(p))
   {
-    const Id4 & c = complex.Cell(t);
-    const int   region = complex.Region(t);
-    m_Cells.push_back({ { points[c[0]], points[c[1]], points[c[2]], points[c[3]] },
-                        complex.LocalIndex(t, p),
-                        region,
-                        merit.Volumes().NumberOf(region) });
+    const Id4 &  c = complex.Cell(t);
+    const int    region = complex.Region(t);
+    const int    at = complex.LocalIndex(t, p);
+    const auto & f = TetraFaces[at];
+    m_Worst = std::max(m_Worst, CellCosine(complex, t));
+    m_Cells.push_back({ { points[c[0]], points[c[1]], points[c[2]], points[c[3]] }, at, region });
+    m_VolumeGradients[merit.Volumes().NumberOf(region)] +=
+      (points[c[f[2]]] - points[c[f[0]]]).cross(points[c[f[1]]] - points[c[f[0]]]) / 6.0;
     for (const Vector3 & corner : m_Cells.back().corners)
     {
       m_Reach += (corner - m_Start).norm() / 3.0;
@@ -98,16 +104,9 @@ PointStar::Directions() const
   std::vector<Vector3> directions;
   if (m_Dimension == 3)
   {
-    for (int k = 0; k < 27; ++k)
-    {
-      const Vector3 d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      if (d.cwiseAbs().sum() == 1 || d.cwiseAbs().minCoeff() > 0)
-      {
-        directions.push_back(d.normalized());
-      }
-    }
+    return SearchDirections();
   }
-  else if (m_Dimension == 2)
+  if (m_Dimension == 2)
   {
     const Vector3 u = m_Normal.unitOrthogonal(), v = m_Normal.cross(u);
     constexpr int around = 8;
@@ -166,18 +165,14 @@ PointStar::FindMove()
   return move;
 }
 
-std::vector<double>
-PointStar::VolumeChanges(const Vector3 & x) const
+const std::vector<double> &
+PointStar::VolumeChanges(const Vector3 & x)
 {
-  std::vector<double> changes(m_Merit.Volumes().Size(), 0.0);
-  for (const Cell & cell : m_Cells)
+  for (std::size_t r = 0; r < m_Changes.size(); ++r)
   {
-    // A cell's volume is linear in the point's place.
-    const auto & f = TetraFaces[cell.at];
-    const auto & c = cell.corners;
-    changes[cell.number] += (x - m_Start).dot((c[f[2]] - c[f[0]]).cross(c[f[1]] - c[f[0]])) / 6.0;
+    m_Changes[r] = m_VolumeGradients[r].dot(x - m_Start);
   }
-  return changes;
+  return m_Changes;
 }
 
 double
@@ -192,7 +187,12 @@ PointStar::OfCells(const Vector3 & x, double least)
     {
       return Nothing;
     }
-    merit += m_Merit.OfCell(LargestDihedralCosine(c[0], c[1], c[2], c[3]), cell.region);
+    const double cosine = LargestDihedralCosine(c[0], c[1], c[2], c[3]);
+    if (cosine > m_Merit.LargestCosine(cell.region, m_Worst))
+    {
+      return Nothing;
+    }
+    merit += m_Merit.OfCell(cosine, cell.region);
     left -= AngleMerit::LargestOfCell();
     if (!(merit + left > least))
     {

@@ -37,7 +37,6 @@ private:
     std::array<Vector3, 4> corners;
     int                    at; ///< of the point
     int                    region;
-    std::size_t            number; ///< of the region's volume
   };
   struct Triangle
   {
@@ -48,8 +47,9 @@ private:
     std::array<double, 3>  offsets;
   };
 
-  std::vector<double>
-  VolumeChanges(const Vector3 & x) const;
+  /** Of the regions, when the point goes to x; until the next call. */
+  const std::vector<double> &
+  VolumeChanges(const Vector3 & x);
   void
   TakeTriangles(const TetraComplex & complex, IdType p);
   void
@@ -57,7 +57,7 @@ private:
   std::vector<Vector3>
   Directions() const;
   /** What the star is worth with the point at x, volumes too, its surfaces by their planes; less than any place where a
-   * cell is not positive, or where it is no more than `least`. */
+   * cell is not positive or an angle falls too low, or where it is no more than `least`. */
   double
   About(const Vector3 & x, double least);
   /** What the triangles are worth with the point at x, by the surfaces themselves. */
@@ -74,9 +74,12 @@ private:
   double                m_Reach{ 0.0 };              ///< mean distance of the neighbours
   Vector3               m_Normal{ Vector3::Zero() }; ///< of a surface point's triangles
   bool                  m_IsFlat{ false };           ///< on a flat cut
+  std::vector<Vector3>  m_VolumeGradients;           ///< of the regions' volumes, which are linear in the point's place
+  std::vector<double>   m_Changes;                   ///< of the regions' volumes
   std::vector<Cell>     m_Cells;
   std::vector<Triangle> m_Triangles;
   double                m_TrianglesAtStart{ 0.0 }; ///< what they are worth
+  double                m_Worst{ -1.0 };           ///< largest cosine of the cells' dihedral angles
 };
 } // namespace bone
 

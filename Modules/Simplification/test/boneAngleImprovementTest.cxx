@@ -140,7 +140,7 @@ TEST(AngleImprovement, LevelsHaveTheWantedAnglesAndStayValid)
       const auto mean = [](const MeshArrays & m) {
         return SummarizeQuality(m, QualityMeasure::MinimumDihedralAngle).mean;
       };
-      EXPECT_GT(mean(level), 1.1 * mean(plain->GetOutput()->GetMesh(i)->GetArrays()));
+      EXPECT_GT(mean(level), 1.05 * mean(plain->GetOutput()->GetMesh(i)->GetArrays()));
       after += CountBelow(level, Wanted());
     }
   }

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace bone;
 
 namespace AngleRelaxationTests
@@ -262,6 +264,71 @@ TEST(AngleRelaxation, EachSweepRaisesTheMeritAndKeepsTheMeshValid)
     EXPECT_TRUE(FindCrossingTriangles(BoundaryFaces(body.complex), body.complex.Points()).empty());
     EXPECT_EQ(CountInverted(mesh), 0u);
     EXPECT_LT(body.volumes.LargestChangeTo(body.complex), 0.03);
+  }
+}
+
+TEST(PointStar, NoAngleFallsBelowTheLeastAndWhatWasThere)
+{
+  // Surfaces weigh so much that places are better there whose angles are worse.
+  for (const double degrees : { 0.0, 12.0 })
+  {
+    Drawn     body(3);
+    AngleGoal goal = Goal();
+    goal.least = { degrees * Degree, degrees * Degree };
+    AngleMerit       merit(body.surfaces, body.volumes, goal, body.complex);
+    const PointMover mover(body.complex);
+    merit.SetWeights(1e5, 1.0);
+    std::size_t fallen = 0;
+    for (IdType p = 0; p < static_cast<IdType>(body.complex.Points().size()); ++p)
+    {
+      const Vector3 before = body.complex.Points()[p];
+      const double  worst = mover.WorstCosine(p);
+      body.complex.TryPoint(p, PointStar(body.complex, merit, p).FindMove().x);
+      fallen += mover.WorstCosine(p) > std::max(worst, std::cos(12 * Degree)) ? 1 : 0;
+      body.complex.TryPoint(p, before);
+    }
+    EXPECT_EQ(fallen > 0, degrees == 0.0) << fallen;
+  }
+}
+
+/** Smallest dihedral angle, rad. */
+double
+LeastAngle(const TetraComplex & complex)
+{
+  double worst = -1.0;
+  for (IdType t = 0; t < complex.Size(); ++t)
+  {
+    worst = std::max(worst, complex.IsAlive(t) ? CellCosine(complex, t) : -1.0);
+  }
+  return std::acos(worst);
+}
+
+TEST(AngleRelaxation, NoAngleFallsBelowTheLeast)
+{
+  // Good cells first, then surfaces that weigh so much that worse cells would come.
+  for (const bool kept : { false, true })
+  {
+    Drawn      body(3);
+    PointMover mover(body.complex);
+    AngleMerit merit(body.surfaces, body.volumes, Goal(), body.complex);
+    merit.SetWeights(1.0, 64.0);
+    AngleRelaxation relaxation(body.complex, mover, merit, { 0, 1 << 20 }, Execution());
+    for (int i = 0; i < 6; ++i)
+    {
+      relaxation.Sweep();
+    }
+    const double least = LeastAngle(body.complex);
+    ASSERT_GT(least, 5 * Degree);
+    AngleGoal goal = Goal();
+    goal.least = kept ? AngleFloors{ least, least } : AngleFloors();
+    AngleMerit surfaces(body.surfaces, body.volumes, goal, body.complex);
+    surfaces.SetWeights(1e5, 1.0);
+    AngleRelaxation back(body.complex, mover, surfaces, { 0, 1 << 20 }, Execution());
+    for (int i = 0; i < 3; ++i)
+    {
+      back.Sweep();
+    }
+    EXPECT_EQ(LeastAngle(body.complex) > least - 1e-9, kept) << LeastAngle(body.complex) << " of " << least;
   }
 }
 

@@ -17,6 +17,10 @@ namespace bone
 std::vector<std::pair<double, IdType>>
 FindWorstCells(const TetraComplex & complex, double limit);
 
+/** Unit vectors along the axes and the diagonals of a cube: the steps of a pattern search in space. */
+const std::vector<Vector3> &
+SearchDirections();
+
 /** \class PointOptimizer
  * \brief Moves the points of the worst cells so that the smallest dihedral angle around each rises.
  *
@@ -49,7 +53,6 @@ private:
   TetraComplex &        m_Complex;
   PointMover &          m_Mover;
   const SurfaceTarget & m_Target;
-  std::vector<Vector3>  m_Directions;
   std::vector<Vector3>  m_Better; ///< places that were found for a point, each better than the one before
   std::vector<char>     m_Dirty;  ///< something at the point has changed since it was last looked at
 };

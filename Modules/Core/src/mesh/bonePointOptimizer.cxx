@@ -28,24 +28,34 @@ FindWorstCells(const TetraComplex & complex, double limit)
   return worst;
 }
 
+const std::vector<Vector3> &
+SearchDirections()
+{
+  static const std::vector<Vector3> directions = [] {
+    std::vector<Vector3> found;
+    for (int i = -1; i <= 1; ++i)
+    {
+      for (int j = -1; j <= 1; ++j)
+      {
+        for (int k = -1; k <= 1; ++k)
+        {
+          if (std::abs(i) + std::abs(j) + std::abs(k) == 1 || i * j * k != 0)
+          {
+            found.push_back(Vector3(i, j, k).normalized());
+          }
+        }
+      }
+    }
+    return found;
+  }();
+  return directions;
+}
+
 PointOptimizer::PointOptimizer(TetraComplex & complex, PointMover & mover, const SurfaceTarget & target)
   : m_Complex(complex)
   , m_Mover(mover)
   , m_Target(target)
 {
-  for (int i = -1; i <= 1; ++i)
-  {
-    for (int j = -1; j <= 1; ++j)
-    {
-      for (int k = -1; k <= 1; ++k)
-      {
-        if (std::abs(i) + std::abs(j) + std::abs(k) == 1 || i * j * k != 0)
-        {
-          m_Directions.push_back(Vector3(i, j, k).normalized());
-        }
-      }
-    }
-  }
   MarkAll();
 }
 
@@ -109,7 +119,7 @@ PointOptimizer::Improve(IdType p)
   for (int stage = 0; stage < stages; ++stage, step *= shrink)
   {
     const Vector3 centre = m_Better.empty() ? start : m_Better.back();
-    for (const Vector3 & direction : m_Directions)
+    for (const Vector3 & direction : SearchDirections())
     {
       const Vector3 x = m_Target.Project(m_Complex, p, centre + step * direction) + offset;
       const double  cosine = WorstAt(p, x, worst);
