@@ -349,9 +349,9 @@ TEST(AngleRelaxation, FlatCutsStayFlat)
     if (body.complex.Dimension(p) == 2)
     {
       body.complex.SurfaceStar(p, faces);
-      const bool flat = body.complex.Surfaces().surfaces[faces.front().surface].flat >= 0;
-      const auto distance =
-        (body.surfaces.Project(body.complex, p, body.complex.Points()[p]) - body.complex.Points()[p]);
+      const bool    flat = body.complex.Surfaces().surfaces[faces.front().surface].flat >= 0;
+      const Vector3 distance =
+        body.surfaces.Project(body.complex, p, body.complex.Points()[p]) - body.complex.Points()[p];
       moved += flat && body.complex.Points()[p] != before[p] ? 1 : 0;
       off += !flat && distance.norm() > 0.05 ? 1 : 0;
       if (flat)
