@@ -10,6 +10,7 @@ Trials are kept beside the models, so that a page that was broken off goes on at
     BONETK=build/test/Apps/bonetk/bonetk BONETK_VALIDATION=build/test/Testing/Validation/boneRegistrationValidation \\
         Testing/Validation/registration.py
 """
+import concurrent.futures
 import hashlib
 import json
 import os
@@ -33,10 +34,16 @@ FEMUR = ("femur cut below, clinical CT", "hip_ct/hip", 1)
 PELVIS = ("hip bone cut above, 3 mm CT", "pelvis_ct_3mm/pelvis", 3)
 TIBIA = ("tibia, 1 mm CT", "tibia_ct/tibia", 2)
 VIEWS = (("two views, 90° apart", (0, 90), 200), ("two views, 30° apart", (0, 30), 200), ("one view", (0,), 100))
-MISPLACED = ("--view-error", 1, 0.5)
 FOUND_AGAIN = ("--view-translation-deviation", 0.6, "--view-rotation-deviation", 0.3)
 FARTHEST = 60  # mm, of the starts of the capture range
 BIN = 5  # mm
+# Trials whose seconds are not told: bones, count and options.
+CAPTURE = {"search and refinement": ([HIP], 400, "--mtre", FARTHEST),
+           "refinement alone": ([HIP], 400, "--mtre", FARTHEST, "--searches", 0)}
+MISPLACED = {(bone, name): ([bone], 40, "--view-error", 1, 0.5, *options)
+             for bone in (HIP, FEMUR, PELVIS)
+             for name, options in (("taken as they are said", ()), ("found along with the pose", FOUND_AGAIN))}
+TOGETHER = {"each by itself": ([HIP, FEMUR], 40, "--mtre", 15, "--alone"), "together": ([HIP, FEMUR], 40, "--mtre", 15)}
 
 
 class Runs:
@@ -71,6 +78,14 @@ class Runs:
             written.write_text(lines)
             written.rename(kept)
         return read(lines)
+
+    def prepare(self, *listed):
+        """Makes these trials, two lists at a time as their seconds do not count."""
+        for bones, *_ in listed:
+            for bone in bones:
+                self.model(bone)
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            return list(pool.map(lambda made: self.trials(*made), listed))
 
 
 def read(lines):
@@ -125,8 +140,8 @@ def capture_range(trials):
 def capture(runs):
     """The section, and its picture."""
     text, figure = "", plt.figure(figsize=(6, 3.2))
-    for name, count, options in (("search and refinement", 400, ()), ("refinement alone", 400, ("--searches", 0))):
-        captured, shares = capture_range(runs.trials([HIP], count, "--mtre", FARTHEST, *options))
+    for name, trials in zip(CAPTURE, runs.prepare(*CAPTURE.values())):
+        captured, shares = capture_range(trials)
         text += f"| {name} | {captured} |\n"
         plt.plot([BIN * (i + 0.5) for i in range(len(shares))], [100 * s if s is not None else None for s in shares],
                  marker="o", label=name)
@@ -141,19 +156,16 @@ def capture(runs):
 
 def misplaced(runs):
     text = "| bone | | found | median mTRE | largest |\n|---|---|---|---|---|\n"
-    for bone in (HIP, FEMUR, PELVIS):
-        for name, options in (("taken as they are said", ()), ("found along with the pose", FOUND_AGAIN)):
-            trials = runs.trials([bone], 40, *MISPLACED, *options)
-            found = [t for t in trials if is_found(t)]
-            text += (f"| {bone[0]} | {name} | {len(found)} of {len(trials)} | {median(found, 'after')} | "
-                     f"{max(t['after'] for t in found):.2f} |\n")
+    for (bone, name), trials in zip(MISPLACED, runs.prepare(*MISPLACED.values())):
+        found = [t for t in trials if is_found(t)]
+        text += (f"| {bone[0]} | {name} | {len(found)} of {len(trials)} | {median(found, 'after')} | "
+                 f"{max(t['after'] for t in found):.2f} |\n")
     return text
 
 
 def together(runs):
     text = "| bone | | found | median mTRE |\n|---|---|---|---|\n"
-    for name, options in (("each by itself", ("--alone",)), ("together", ())):
-        trials = runs.trials([HIP, FEMUR], 40, "--mtre", 15, *options)
+    for name, trials in zip(TOGETHER, runs.prepare(*TOGETHER.values())):
         for bone, own in ((HIP, trials), (FEMUR, [t["others"][0] for t in trials])):
             found = [t for t in own if is_found(t)]
             text += f"| {bone[0]} | {name} | {len(found)} of {len(own)} | {median(found, 'after')} |\n"
