@@ -153,10 +153,14 @@ FilesIn(const std::string & folder)
   return files;
 }
 
+/** Models, radiographs and pictures into a folder. */
 void
-WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline & pipeline, StagingFolder & staging)
+WriteResults(const Evaluation &  evaluation,
+             const BuildReport & report,
+             BuildPipeline &     pipeline,
+             const std::string & folder)
 {
-  const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
+  const auto in = [&folder](const std::string & name) { return folder + "/" + name; };
   WriteContours(pipeline.GetContours(), in("contours.vtp"));
   WriteHierarchy(pipeline.GetHierarchy(), in("model"), report.parameters.storage);
   auto geometry = const_cast<XRayGeometry *>(pipeline.GetRadiograph(0)->GetGeometry());
@@ -174,6 +178,13 @@ WriteOutputs(const Evaluation & evaluation, BuildReport & report, BuildPipeline 
                                                                { &evaluation.cutPlane, "cut_plane.png" },
                                                                { &evaluation.radiographs, "radiographs.png" } };
   Execution().For(std::size(pictures), [&](std::size_t k) { pictures[k].first->Write(in(pictures[k].second)); });
+}
+
+/** All files beside the report are there. */
+void
+WriteReports(BuildReport & report, StagingFolder & staging)
+{
+  const auto in = [&staging](const std::string & name) { return staging.GetPath() + "/" + name; };
   WriteFileAtomically(in("report.txt"), ToText(report));
   report.outputs = FilesIn(staging.GetPath());
   WriteFileAtomically(in("report.json"), ToJson(report));
@@ -276,7 +287,7 @@ ExpectStages(const BuildJob & job, const BuildPlanParameters & plan, Session & s
                                      { "quality", 5.0 },
                                      { "fit", 0.4 },
                                      { "collapse", 3.0 },
-                                     { "evaluation", 2.5 },
+                                     { "evaluation", 1.0 },
                                      { "writing", 1.0 } };
   session.Expect(stages, job.from, job.to);
 }
@@ -314,6 +325,8 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
     session.Watch(filter, name);
   }
   report.resolution = Plan(input, parameters, pipeline, session);
+  const Evidence evidence{ input.ct, input.labels, ct };
+  BuildEvaluator evaluator(evidence, pipeline);
   try
   {
     FinishBuild(plan, nullptr, pipeline);
@@ -328,10 +341,9 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   }
 
   Lap              lap;
-  const Evidence   evidence{ input.ct, input.labels, ct };
   const Evaluation evaluation = [&] {
     const auto stage = session.BeginStage("evaluation");
-    return Evaluate(pipeline, evidence);
+    return evaluator.Finish();
   }();
   report.times.emplace_back("evaluation", lap());
   pipeline.GetParameters(parameters);
@@ -350,11 +362,15 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.warnings = session.GetWarnings();
   {
     const auto stage = session.BeginStage("writing");
-    if (options.page.IsOn())
-    {
-      WriteBuildPage(evaluation, evidence, report, pipeline, staging.GetPath() + "/report.html", session);
-    }
-    WriteOutputs(evaluation, report, pipeline, staging);
+    auto       page = RunBeside([&] {
+      if (options.page.IsOn())
+      {
+        WriteBuildPage(evaluation, evidence, report, pipeline, staging.GetPath() + "/report.html", session);
+      }
+    });
+    WriteResults(evaluation, report, pipeline, staging.GetPath());
+    page.get();
+    WriteReports(report, staging);
   }
   session.Print("\n" + ToText(report) + "\nwritten to " + job.folder + "\n");
   return report;

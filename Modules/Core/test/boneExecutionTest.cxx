@@ -4,6 +4,7 @@
 #include "boneExecution.h"
 
 #include <itkCommand.h>
+#include <itkMultiThreaderBase.h>
 #include <itkProcessObject.h>
 
 #include <gmock/gmock.h>
@@ -139,5 +140,18 @@ TEST(Execution, RunsOnAsManyWorkUnitsAsTheFilter)
   bool       elsewhere = false;
   execution.For(1000, [&](std::size_t) { elsewhere = elsewhere || std::this_thread::get_id() != caller; });
   EXPECT_FALSE(elsewhere);
+}
+
+TEST(RunBeside, TakesAThreadOfItsOwnUnlessThereIsOne)
+{
+  const auto caller = std::this_thread::get_id();
+  const auto threads = itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads();
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(2);
+  EXPECT_NE(bone::RunBeside([] { return std::this_thread::get_id(); }).get(), caller);
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(1);
+  EXPECT_EQ(bone::RunBeside([] { return std::this_thread::get_id(); }).get(), caller);
+  itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(threads);
+  auto failing = bone::RunBeside([] { throw std::runtime_error("no"); });
+  EXPECT_THROW(failing.get(), std::runtime_error);
 }
 } // namespace ExecutionTests

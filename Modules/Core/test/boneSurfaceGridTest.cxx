@@ -70,6 +70,45 @@ TEST(SurfaceGrid, AgreesWithTheAuditOfAllPairs)
   EXPECT_FALSE(grid.Crosses(triangles[59], triangles[59][0], points)) << "triangles of the ignored point do not count";
 }
 
+TEST(SurfaceGrid, FollowsPointsThatMove)
+{
+  std::mt19937                           random(11);
+  std::uniform_real_distribution<double> uniform(-5, 5);
+  const auto               place = [&] { return Vector3(uniform(random), uniform(random), uniform(random)); };
+  std::vector<Vector3>     points;
+  std::vector<TriangleIds> triangles;
+  SurfaceGrid              grid(1.0);
+  for (IdType i = 0; i < 60; ++i)
+  {
+    const Vector3 at = place();
+    for (int k = 0; k < 3; ++k)
+    {
+      points.push_back(at + 0.2 * place());
+    }
+    triangles.push_back({ 3 * i, 3 * i + 1, 3 * i + 2 });
+    grid.Insert(triangles.back(), points);
+  }
+  int crossings = 0;
+  for (int i = 0; i < 600; ++i)
+  {
+    // Within a cell, into the next one, or anywhere.
+    const IdType  p = static_cast<IdType>(random() % points.size());
+    const Vector3 before = points[p];
+    points[p] += (i % 3 == 0 ? 0.01 : i % 3 == 1 ? 0.2 : 1.0) * place();
+    grid.Move(triangles[p / 3], p, before, points);
+    const IdType q = static_cast<IdType>(random() % points.size());
+    bool         any = false;
+    for (const TriangleIds & t : triangles)
+    {
+      any = any || (t != triangles[q / 3] && TrianglesCross(triangles[q / 3], t, points));
+    }
+    EXPECT_EQ(grid.Crosses(triangles[q / 3], q, points), any);
+    crossings += any ? 1 : 0;
+  }
+  EXPECT_GT(crossings, 50);
+  EXPECT_LT(crossings, 550);
+}
+
 TEST(SurfaceGrid, LayeredBodiesDoNotCrossThemselves)
 {
   const auto mesh = test::MakeBall(4, { 1, 2 }, 12, 0.15, 3);
@@ -104,6 +143,10 @@ TEST(TriangleTree, FindsWhatExhaustiveSearchFinds)
     EXPECT_FALSE(tree.IsWithin(x, best * (1 - 1e-9)));
     EXPECT_NEAR((nearest.point - x).squaredNorm(), best, 1e-12 * (1 + best));
     const auto & t = triangles[nearest.triangle];
+    EXPECT_EQ(tree.GetTriangle(nearest.triangle), t);
+    int near = static_cast<int>(random() % triangles.size());
+    EXPECT_EQ(tree.FindSquaredDistance(x, near), nearest.squaredDistance);
+    EXPECT_EQ(near, nearest.triangle);
     EXPECT_NEAR((ClosestPointOnTriangle(nearest.point, t[0], t[1], t[2]) - nearest.point).norm(), 0.0, 1e-12);
   }
   EXPECT_EQ(TriangleTree().FindNearest(Vector3::Zero()).triangle, -1);

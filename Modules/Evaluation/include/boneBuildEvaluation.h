@@ -7,6 +7,9 @@
 #include "boneBuildReport.h"
 #include "bonePictures.h"
 
+#include <future>
+#include <memory>
+
 namespace bone
 {
 /** What a model is compared with. */
@@ -22,17 +25,47 @@ struct Evidence
 struct Evaluation
 {
   std::vector<LevelReport> levels;
-  LabelImage::ConstPointer mask;        ///< the evidence's, or what stands for it
-  Window                   window;      ///< of the CT in pictures
-  Canvas                   slices;      ///< of the CT with contours
-  Canvas                   cutPlane;    ///< the CT and the levels in the plane of the bone's largest extent
-  Canvas                   radiographs; ///< of the CT and the levels, in the pipeline's view and from the side
+  std::vector<double>      lowerDegrees; ///< of the finest level, see \ref LowerDegreeErrors
+  Window                   window;       ///< of the CT in pictures
+  Canvas                   slices;       ///< of the CT with contours
+  Canvas                   cutPlane;     ///< the CT and the levels in the plane of the bone's largest extent
+  Canvas                   radiographs;  ///< of the CT and the levels, in the pipeline's view and from the side
 };
 
-/** Compares each level of an up-to-date pipeline with the CT, by volume, surface, density and radiograph. The
- * radiograph of the CT counts the mask's voxels only. */
-Evaluation
-Evaluate(BuildPipeline & pipeline, const Evidence & evidence);
+/** \class BuildEvaluator
+ * \brief Compares each level of a build with the CT, by volume, surface, density and radiograph.
+ *
+ * Most of the work is the finest level's. It begins when that is fitted, beside the collapse, which leaves processors
+ * idle: on a thread of its own, unless ITK's default number of threads is one. What is found does not depend on that.
+ * The radiograph of the CT counts the mask's voxels only.
+ *
+ * \code
+ *   PlanBuild(input, parameters, pipeline);
+ *   BuildEvaluator   evaluator(evidence, pipeline);
+ *   FinishBuild(plan, nullptr, pipeline);
+ *   const Evaluation evaluation = evaluator.Finish();
+ * \endcode */
+class BuildEvaluator
+{
+public:
+  /** Brings the density fit up to date. \param pipeline  must outlive this */
+  BuildEvaluator(const Evidence & evidence, BuildPipeline & pipeline);
+  /** Waits for the thread. */
+  ~BuildEvaluator();
+  BuildEvaluator(const BuildEvaluator &) = delete;
+  BuildEvaluator &
+  operator=(const BuildEvaluator &) = delete;
+
+  /** When the pipeline is up to date, once. Throws what the work threw. */
+  Evaluation
+  Finish();
+
+private:
+  struct Begun;
+
+  BuildPipeline &                     m_Pipeline;
+  std::future<std::unique_ptr<Begun>> m_Begun;
+};
 } // namespace bone
 
 #endif

@@ -6,19 +6,43 @@
 #include "boneBuildPlan.h"
 #include "boneDensityEvaluation.h"
 #include "boneDensityImageFilter.h"
+#include "boneExecution.h"
+#include "boneMemory.h"
 #include "boneTicks.h"
 #include "boneVoxelDRRImageFilter.h"
 #include "boneXRayPicture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
 namespace bone
 {
+namespace evaluation
+{
+/** What levels are compared with, beside radiographs. */
+struct References
+{
+  Evidence                            evidence; ///< with a mask
+  std::optional<SurfaceDistanceMeter> distances;
+  PlaneView                           cut;
+  std::array<double, 2>               percentiles; ///< of the CT in the mask
+};
+
+/** What is measured and drawn of a level by itself. */
+struct LevelFindings
+{
+  LevelReport report;
+  LevelPanel  cut;
+};
+} // namespace evaluation
+
 namespace
 {
+using namespace evaluation;
 using MeshType = BuildPipeline::MeshType;
 
 /** The model's density at the voxels of an image, NaN outside the model. */
@@ -114,79 +138,146 @@ MeanOf(const std::vector<Vector3> & points)
   }
   return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
 }
-} // namespace
 
-Evaluation
-Evaluate(BuildPipeline & pipeline, const Evidence & evidence)
+References
+MakeReferences(const Evidence & evidence, const MeshArrays & finest)
 {
-  const auto & levels = pipeline.GetHierarchy()->GetLevels();
-  const auto   finest = levels.front().mesh->GetArrays();
-  Evaluation   evaluation;
-
-  LabelImage::ConstPointer mask = evidence.mask;
-  if (mask.IsNull())
+  References references;
+  references.evidence = evidence;
+  if (evidence.mask.IsNull())
   {
-    mask = MaskOfMesh(finest, evidence.ct);
+    references.evidence.mask = MaskOfMesh(finest, evidence.ct);
   }
-  // First, and by themselves: they take a copy of the CT for a time.
+  else
+  {
+    references.distances.emplace(evidence.mask);
+  }
+  references.cut = FrameLargestCut(finest.points, 5.0, 420);
+  references.percentiles = PercentileRange(evidence.ct, references.evidence.mask);
+  return references;
+}
+
+/** \param level  from 0. */
+LevelFindings
+FindOut(const MeshType * mesh, std::size_t level, const References & references)
+{
+  const Evidence & evidence = references.evidence;
+  const MeshArrays arrays = mesh->GetArrays();
+  LevelReport      report = DescribeLevel(arrays);
+  if (references.distances)
+  {
+    report.dice = DiceOverlap(arrays, evidence.mask);
+    report.distances = references.distances->Measure(arrays);
+  }
+  report.density = CompareWithImage(arrays, evidence.ct, evidence.mask);
+  const std::string name = LevelName(level, report);
+  return { std::move(report), { name, ToPanel(Voxelize(mesh, MakePlaneImage(references.cut))) } };
+}
+
+SplineReport
+DescribeSpline(const MeshType * spline, std::size_t coefficients, const Evidence & evidence)
+{
+  return { static_cast<std::size_t>(spline->GetNumberOfTetrahedra()),
+           coefficients,
+           CompareWithImage(spline->GetArrays(), evidence.ct, evidence.mask) };
+}
+
+/** In the pipeline's view and from the side; sets the levels' differences to the CT in the former. */
+std::vector<Comparison>
+CompareRadiographs(BuildPipeline &            pipeline,
+                   const Evidence &           evidence,
+                   const std::string &        unit,
+                   std::vector<LevelReport> & reports)
+{
+  const auto &     levels = pipeline.GetHierarchy()->GetLevels();
   RadiographPanels front, side;
-  pipeline.GetRadiograph(0)->Update();
   front.geometry = pipeline.GetRadiograph(0)->GetGeometry();
   side.geometry = LateralView(levels.front().mesh);
   for (RadiographPanels * panels : { &front, &side })
   {
-    panels->reference = RadiographOfCT(evidence.ct, mask, panels->geometry);
+    panels->reference = RadiographOfCT(evidence.ct, evidence.mask, panels->geometry);
   }
-  const PlaneView         cut = FrameLargestCut(finest.points, 5.0, 420);
-  std::vector<LevelPanel> cuts;
-  const auto distances = evidence.mask ? std::make_optional<SurfaceDistanceMeter>(evidence.mask) : std::nullopt;
   for (std::size_t i = 0; i < levels.size(); ++i)
   {
-    const MeshType * mesh = levels[i].mesh;
-    const MeshArrays arrays = mesh->GetArrays();
-    LevelReport      report = DescribeLevel(arrays);
-    report.densityErrorToLevel1 = levels[i].densityError;
-    report.surfaceErrorToLevel1 = levels[i].surfaceError;
-    report.stopReason = levels[i].stopReason;
-    if (evidence.mask.IsNotNull())
-    {
-      report.dice = DiceOverlap(arrays, mask);
-      report.distances = distances->Measure(arrays);
-    }
-    report.density = CompareWithImage(arrays, evidence.ct, mask);
-    if (const auto spline = pipeline.GetSpline(i))
-    {
-      report.spline = { static_cast<std::size_t>(spline->GetNumberOfTetrahedra()),
-                        pipeline.GetSplineFit(i)->GetNumberOfFreeCoefficients(),
-                        CompareWithImage(spline->GetArrays(), evidence.ct, mask) };
-    }
-
     BuildPipeline::RadiographType * radiograph = pipeline.GetRadiograph(i);
     radiograph->Update();
-    report.radiographPercent = RadiographDifferencePercent(front.reference, radiograph->GetOutput());
-    const std::string name = LevelName(i, report);
+    reports[i].radiographPercent = RadiographDifferencePercent(front.reference, radiograph->GetOutput());
+    const std::string name = LevelName(i, reports[i]);
     front.levels.push_back({ name, ToPanel(radiograph->GetOutput()) });
-    side.levels.push_back({ name, ToPanel(RadiographOfLevel(mesh, side.geometry, *radiograph)) });
-    cuts.push_back({ name, ToPanel(Voxelize(mesh, MakePlaneImage(cut))) });
-    evaluation.levels.push_back(std::move(report));
+    side.levels.push_back({ name, ToPanel(RadiographOfLevel(levels[i].mesh, side.geometry, *radiograph)) });
   }
-
-  const auto        percentiles = PercentileRange(evidence.ct, mask);
-  const double      range = percentiles[1] - percentiles[0];
-  const std::string unit = DensityUnitName(finest.quantity);
-  const Window      window{ RoundInRange(percentiles[0] - 0.3 * range, range),
-                       RoundInRange(percentiles[1] + 0.05 * range, range) };
-  evaluation.mask = mask;
-  evaluation.window = window;
-  evaluation.slices = DrawSlices(evidence.ct, pipeline.GetContours(), window, unit, evidence.whole);
-  Comparison comparison = CompareCut(cut, evidence.ct, std::move(cuts), window);
-  comparison.scale = RoundInRange(0.25 * range, range);
-  comparison.unit = unit;
-  evaluation.cutPlane = DrawComparison({ comparison });
-  const Vector3     centre = MeanOf(finest.points);
+  const Vector3     centre = MeanOf(levels.front().mesh->GetArrays().points);
   const std::string integral = unit + "\u00B7mm";
-  evaluation.radiographs =
-    DrawComparison({ CompareRadiographs(front, centre, integral), CompareRadiographs(side, centre, integral) });
+  return { CompareRadiographs(front, centre, integral), CompareRadiographs(side, centre, integral) };
+}
+} // namespace
+
+/** What is known before the coarser levels are. */
+struct BuildEvaluator::Begun
+{
+  References          references;
+  LevelFindings       finest;
+  std::vector<double> lowerDegrees;
+};
+
+BuildEvaluator::BuildEvaluator(const Evidence & evidence, BuildPipeline & pipeline)
+  : m_Pipeline(pipeline)
+{
+  ReturnFreedMemory();
+  m_Begun = RunBeside([evidence, finest = pipeline.GetFinest()] {
+    const MeshArrays    arrays = finest->GetArrays();
+    References          references = MakeReferences(evidence, arrays);
+    LevelFindings       findings = FindOut(finest, 0, references);
+    std::vector<double> lower = LowerDegreeErrors(arrays, evidence.ct, references.evidence.mask);
+    return std::make_unique<Begun>(Begun{ std::move(references), std::move(findings), std::move(lower) });
+  });
+}
+
+BuildEvaluator::~BuildEvaluator() = default;
+
+Evaluation
+BuildEvaluator::Finish()
+{
+  const auto              begun = m_Begun.get();
+  References &            references = begun->references;
+  const Evidence &        evidence = references.evidence;
+  const auto &            levels = m_Pipeline.GetHierarchy()->GetLevels();
+  Evaluation              evaluation;
+  std::vector<LevelPanel> cuts;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    LevelFindings found = i == 0 ? std::move(begun->finest) : FindOut(levels[i].mesh, i, references);
+    found.report.densityErrorToLevel1 = levels[i].densityError;
+    found.report.surfaceErrorToLevel1 = levels[i].surfaceError;
+    found.report.stopReason = levels[i].stopReason;
+    if (const auto spline = m_Pipeline.GetSpline(i))
+    {
+      found.report.spline = DescribeSpline(spline, m_Pipeline.GetSplineFit(i)->GetNumberOfFreeCoefficients(), evidence);
+    }
+    evaluation.levels.push_back(std::move(found.report));
+    cuts.push_back(std::move(found.cut));
+  }
+  references.distances.reset();
+  ReturnFreedMemory(); // radiographs of the CT take a copy of it for a time
+
+  const auto &      percentiles = references.percentiles;
+  const double      range = percentiles[1] - percentiles[0];
+  const std::string unit = DensityUnitName(levels.front().mesh->GetArrays().quantity);
+  evaluation.lowerDegrees = std::move(begun->lowerDegrees);
+  evaluation.window = { RoundInRange(percentiles[0] - 0.3 * range, range),
+                        RoundInRange(percentiles[1] + 0.05 * range, range) };
+  Comparison cut = CompareCut(references.cut, evidence.ct, std::move(cuts), evaluation.window);
+  cut.scale = RoundInRange(0.25 * range, range);
+  cut.unit = unit;
+  const auto                  radiographs = CompareRadiographs(m_Pipeline, evidence, unit, evaluation.levels);
+  const std::function<void()> drawings[] = {
+    [&] {
+      evaluation.slices = DrawSlices(evidence.ct, m_Pipeline.GetContours(), evaluation.window, unit, evidence.whole);
+    },
+    [&] { evaluation.cutPlane = DrawComparison({ cut }); },
+    [&] { evaluation.radiographs = DrawComparison(radiographs); }
+  };
+  Execution().For(std::size(drawings), [&drawings](std::size_t k) { drawings[k](); });
   return evaluation;
 }
 } // namespace bone

@@ -165,7 +165,7 @@ MakeBuildPage(const BuildReport & report,
                   "Radiographs of the CT and of the levels, and their differences",
                   "Line integrals of density: those of the CT count the bone's voxels alone");
   page.BeginSection("density", "Density");
-  AddDensityCharts(report, LowerDegreeErrors(meshes.front(), evidence.ct, evaluation.mask), page);
+  AddDensityCharts(report, evaluation.lowerDegrees, page);
   page.BeginSection("quality", "Quality of the tetrahedra");
   AddQualityCharts(report, page);
   return page;

@@ -192,10 +192,12 @@ std::array<double, 2>
 PercentileRange(const CTImage * ct, const LabelImage * mask)
 {
   const std::size_t   count = ct->GetLargestPossibleRegion().GetNumberOfPixels();
+  const short * const inside = mask->GetBufferPointer();
   std::vector<double> values;
+  values.reserve(count - static_cast<std::size_t>(std::count(inside, inside + count, short{ 0 })));
   for (std::size_t k = 0; k < count; ++k)
   {
-    if (mask->GetBufferPointer()[k] != 0)
+    if (inside[k] != 0)
     {
       values.push_back(ct->GetBufferPointer()[k]);
     }

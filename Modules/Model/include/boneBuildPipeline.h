@@ -157,6 +157,9 @@ public:
   {
     return m_PlacedHierarchy->GetOutput();
   }
+  /** The first level, which is known before the others: a mesh of its own. Brings the density fit up to date. */
+  MeshType::Pointer
+  GetFinest();
   /** The density of a level whose gradient is continuous within regions (\ref SplitWorseyFarin), fitted to the image
    * where the fit's parameters have ContinuousGradient; null where they have not. The hierarchy is without it, as
    * levels are simplified from tetrahedra that are not split. Brings itself up to date. */
@@ -179,6 +182,10 @@ public:
   GetWarnings() const;
 
 private:
+  /** The fit's mesh in its place, up to date. */
+  MeshType::Pointer
+  PlacedMeshOf(FitType * fit) const;
+
   SnakeType::Pointer      m_Snake{ SnakeType::New() };
   SlicesType::Pointer     m_Slices{ SlicesType::New() };
   ResampleType::Pointer   m_Resample{ ResampleType::New() };

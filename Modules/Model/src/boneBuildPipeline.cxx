@@ -160,6 +160,18 @@ BuildPipeline::GetSpline(std::size_t level)
   {
     return nullptr;
   }
+  return this->PlacedMeshOf(fit);
+}
+
+BuildPipeline::MeshType::Pointer
+BuildPipeline::GetFinest()
+{
+  return this->PlacedMeshOf(m_Fit);
+}
+
+BuildPipeline::MeshType::Pointer
+BuildPipeline::PlacedMeshOf(FitType * fit) const
+{
   fit->Update();
   auto placed = MeshType::New();
   placed->SetArrays(Place(fit->GetOutput()->GetArrays(), m_PlacedHierarchy->GetPlacement()));

@@ -6,6 +6,8 @@
 
 #include "boneTypes.h"
 
+#include <array>
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -38,13 +40,38 @@ public:
   void
   Erase(const TriangleIds & triangle, const std::vector<Vector3> & points);
 
+  /** A triangle's point p has moved to where it is now. \param before  where it was */
+  void
+  Move(const TriangleIds & triangle, IdType p, const Vector3 & before, const std::vector<Vector3> & points);
+
   /** Whether the triangle crosses one in the grid, other than those that have point `ignored`. */
   bool
   Crosses(const TriangleIds & triangle, IdType ignored, const std::vector<Vector3> & points) const;
 
+  using Cell = std::array<std::int64_t, 3>;
+
+  /** The cells that a box meets. */
+  struct Range
+  {
+    Cell lower;
+    Cell upper;
+  };
+
 private:
-  double                                                      m_Scale;
-  std::unordered_map<std::uint64_t, std::vector<TriangleIds>> m_Cells;
+  /** A triangle as it was put in. */
+  struct Entry
+  {
+    TriangleIds ids; ///< ascending
+    Cell        lower;
+  };
+
+  void
+  Insert(const TriangleIds & triangle, const Range & range);
+  void
+  Erase(const TriangleIds & triangle, const Range & range);
+
+  double                                                m_Scale;
+  std::unordered_map<std::uint64_t, std::vector<Entry>> m_Cells;
 };
 
 /** Pairs of triangles of a surface that cross, each once, in ascending order: the audit of a whole surface. */

@@ -59,7 +59,7 @@ public:
   const Triangle &
   GetTriangle(int index) const
   {
-    return m_Triangles[index];
+    return m_Triangles[m_Place[index]];
   }
 
 private:
@@ -79,8 +79,9 @@ private:
   void
   FindNearer(const Vector3 & x, Nearest & nearest) const;
 
-  std::vector<Triangle> m_Triangles;
-  std::vector<int>      m_Order;
+  std::vector<Triangle> m_Triangles; ///< leaf by leaf
+  std::vector<int>      m_Order;     ///< their numbers as they were given
+  std::vector<int>      m_Place;     ///< of each number
   std::vector<Node>     m_Nodes;
 };
 } // namespace bone

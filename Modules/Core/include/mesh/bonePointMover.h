@@ -41,6 +41,9 @@ public:
 private:
   bool
   StarIsPositive(IdType p) const;
+  /** Whether an angle around p is smaller than the floor's and than all were with p where it was before. */
+  bool
+  FallsBelow(IdType p, const Vector3 & before, double cosineFloor);
   void
   CollectSurface(IdType p);
   bool

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <future>
 #include <memory>
 
 namespace itk
@@ -90,6 +91,16 @@ private:
   double                 m_From{ 0.0 };
   double                 m_To{ 0.0 };
 };
+
+/** Calls `work` on a thread of its own, beside what follows; with one thread (ITK's default number), when its result is
+ * asked for. The future's destructor waits for the thread. */
+template <typename TWork>
+auto
+RunBeside(TWork && work)
+{
+  const bool alone = Execution().GetNumberOfWorkUnits() < 2;
+  return std::async(alone ? std::launch::deferred : std::launch::async, std::forward<TWork>(work));
+}
 } // namespace bone
 
 #endif

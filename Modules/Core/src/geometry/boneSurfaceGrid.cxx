@@ -130,9 +130,12 @@ struct Box
   Vector3 lower;
   Vector3 upper;
 
+  Box(const Vector3 & a, const Vector3 & b, const Vector3 & c)
+    : lower(a.cwiseMin(b).cwiseMin(c))
+    , upper(a.cwiseMax(b).cwiseMax(c))
+  {}
   Box(const TriangleIds & t, const std::vector<Vector3> & points)
-    : lower(points[t[0]].cwiseMin(points[t[1]]).cwiseMin(points[t[2]]))
-    , upper(points[t[0]].cwiseMax(points[t[1]]).cwiseMax(points[t[2]]))
+    : Box(points[t[0]], points[t[1]], points[t[2]])
   {}
 
   bool
@@ -163,30 +166,50 @@ FoldsOnto(IdType p, IdType q, IdType apexS, IdType apexT, const std::vector<Vect
   return Orient2D(project(a), project(b), project(c)) * Orient2D(project(a), project(b), project(d)) > 0;
 }
 
+using Cell = SurfaceGrid::Cell;
+using Range = SurfaceGrid::Range;
+
+Range
+RangeOf(const Box & box, double scale)
+{
+  const auto cell = [scale](const Vector3 & x) {
+    const auto at = [&](int k) { return static_cast<std::int64_t>(std::floor(x[k] * scale)); };
+    return Cell{ at(0), at(1), at(2) };
+  };
+  return { cell(box.lower), cell(box.upper) };
+}
+
+/** Calls visit(cell, key) for each cell, until it says true. */
 template <typename TVisit>
 void
-ForEachCell(const TriangleIds & t, const std::vector<Vector3> & points, double scale, TVisit visit)
+ForEachCell(const Range & range, TVisit visit)
 {
-  const Box               box(t, points);
-  const Vector3           lower = box.lower * scale, upper = box.upper * scale;
-  const auto              cell = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
   constexpr std::uint64_t mask = (1u << 21) - 1;
-  for (std::int64_t i = cell(lower.x()); i <= cell(upper.x()); ++i)
+  Cell                    c{};
+  for (c[0] = range.lower[0]; c[0] <= range.upper[0]; ++c[0])
   {
-    for (std::int64_t j = cell(lower.y()); j <= cell(upper.y()); ++j)
+    for (c[1] = range.lower[1]; c[1] <= range.upper[1]; ++c[1])
     {
-      for (std::int64_t k = cell(lower.z()); k <= cell(upper.z()); ++k)
+      for (c[2] = range.lower[2]; c[2] <= range.upper[2]; ++c[2])
       {
-        const std::uint64_t key = ((static_cast<std::uint64_t>(i) & mask) << 42) |
-                                  ((static_cast<std::uint64_t>(j) & mask) << 21) |
-                                  (static_cast<std::uint64_t>(k) & mask);
-        if (visit(key))
+        const std::uint64_t key = ((static_cast<std::uint64_t>(c[0]) & mask) << 42) |
+                                  ((static_cast<std::uint64_t>(c[1]) & mask) << 21) |
+                                  (static_cast<std::uint64_t>(c[2]) & mask);
+        if (visit(c, key))
         {
           return;
         }
       }
     }
   }
+}
+
+/** Whether a cell is the first of those that two triangles have in common, by which each pair is met once. */
+bool
+IsFirstOfBoth(const Cell & cell, const Cell & lower, const Cell & otherLower)
+{
+  return cell[0] == std::max(lower[0], otherLower[0]) && cell[1] == std::max(lower[1], otherLower[1]) &&
+         cell[2] == std::max(lower[2], otherLower[2]);
 }
 } // namespace
 
@@ -246,21 +269,47 @@ SurfaceGrid::SurfaceGrid(double cellSize)
 void
 SurfaceGrid::Insert(const TriangleIds & triangle, const std::vector<Vector3> & points)
 {
-  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
-    m_Cells[key].push_back(Ascending(triangle));
-    return false;
-  });
+  this->Insert(triangle, RangeOf(Box(triangle, points), m_Scale));
 }
 
 void
 SurfaceGrid::Erase(const TriangleIds & triangle, const std::vector<Vector3> & points)
 {
-  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
+  this->Erase(triangle, RangeOf(Box(triangle, points), m_Scale));
+}
+
+void
+SurfaceGrid::Move(const TriangleIds & triangle, IdType p, const Vector3 & before, const std::vector<Vector3> & points)
+{
+  const auto  at = [&](int k) -> const Vector3 & { return triangle[k] == p ? before : points[triangle[k]]; };
+  const Range from = RangeOf(Box(at(0), at(1), at(2)), m_Scale), to = RangeOf(Box(triangle, points), m_Scale);
+  if (from.lower != to.lower || from.upper != to.upper)
+  {
+    this->Erase(triangle, from);
+    this->Insert(triangle, to);
+  }
+}
+
+void
+SurfaceGrid::Insert(const TriangleIds & triangle, const Range & range)
+{
+  const Entry entry{ Ascending(triangle), range.lower };
+  ForEachCell(range, [&](const Cell &, std::uint64_t key) {
+    m_Cells[key].push_back(entry);
+    return false;
+  });
+}
+
+void
+SurfaceGrid::Erase(const TriangleIds & triangle, const Range & range)
+{
+  const TriangleIds ids = Ascending(triangle);
+  ForEachCell(range, [&](const Cell &, std::uint64_t key) {
     const auto cell = m_Cells.find(key);
     if (cell != m_Cells.end())
     {
       auto &     content = cell->second;
-      const auto at = std::find(content.begin(), content.end(), Ascending(triangle));
+      const auto at = std::find_if(content.begin(), content.end(), [&ids](const Entry & e) { return e.ids == ids; });
       if (at != content.end())
       {
         *at = content.back();
@@ -274,14 +323,15 @@ SurfaceGrid::Erase(const TriangleIds & triangle, const std::vector<Vector3> & po
 bool
 SurfaceGrid::Crosses(const TriangleIds & triangle, IdType ignored, const std::vector<Vector3> & points) const
 {
-  bool      crosses = false;
-  const Box box(triangle, points);
-  ForEachCell(triangle, points, m_Scale, [&](std::uint64_t key) {
+  bool        crosses = false;
+  const Box   box(triangle, points);
+  const Range range = RangeOf(box, m_Scale);
+  ForEachCell(range, [&](const Cell & c, std::uint64_t key) {
     const auto cell = m_Cells.find(key);
-    crosses =
-      cell != m_Cells.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const TriangleIds & t) {
-        return !Has(t, ignored) && box.Meets(t, points) && TrianglesCross(triangle, t, points);
-      });
+    crosses = cell != m_Cells.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const Entry & entry) {
+                return IsFirstOfBoth(c, range.lower, entry.lower) && !Has(entry.ids, ignored) &&
+                       box.Meets(entry.ids, points) && TrianglesCross(triangle, entry.ids, points);
+              });
     return crosses;
   });
   return crosses;
@@ -295,27 +345,33 @@ FindCrossingTriangles(const std::vector<TriangleIds> & triangles, const std::vec
   {
     length += (points[t[1]] - points[t[0]]).norm() / static_cast<double>(triangles.size());
   }
-  const double                                        scale = length > 0 ? 1.0 / length : 1.0;
-  std::unordered_map<std::uint64_t, std::vector<int>> cells;
-  std::vector<std::array<int, 2>>                     pairs;
+  struct Placed
+  {
+    int  triangle;
+    Cell lower;
+  };
+  const double                                           scale = length > 0 ? 1.0 / length : 1.0;
+  std::unordered_map<std::uint64_t, std::vector<Placed>> cells;
+  std::vector<std::array<int, 2>>                        pairs;
   for (int i = 0; i < static_cast<int>(triangles.size()); ++i)
   {
-    const Box box(triangles[i], points);
-    ForEachCell(triangles[i], points, scale, [&](std::uint64_t key) {
+    const Box   box(triangles[i], points);
+    const Range range = RangeOf(box, scale);
+    ForEachCell(range, [&](const Cell & c, std::uint64_t key) {
       auto & cell = cells[key];
-      for (int j : cell)
+      for (const auto & [j, lower] : cell)
       {
-        if (box.Meets(triangles[j], points) && TrianglesCross(triangles[i], triangles[j], points))
+        if (IsFirstOfBoth(c, range.lower, lower) && box.Meets(triangles[j], points) &&
+            TrianglesCross(triangles[i], triangles[j], points))
         {
           pairs.push_back({ j, i });
         }
       }
-      cell.push_back(i);
+      cell.push_back({ i, range.lower });
       return false;
     });
   }
   std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 } // namespace bone

@@ -88,6 +88,16 @@ TriangleTree::TriangleTree(std::vector<Triangle> triangles)
     m_Nodes.reserve(2 * m_Triangles.size() / LeafSize + 2);
     Build(0, static_cast<int>(m_Triangles.size()));
   }
+  // Triangles of a leaf lie together in memory.
+  const std::vector<Triangle> given = std::move(m_Triangles);
+  m_Triangles.clear();
+  m_Triangles.reserve(given.size());
+  m_Place.resize(given.size());
+  for (const int i : m_Order)
+  {
+    m_Place[i] = static_cast<int>(m_Triangles.size());
+    m_Triangles.push_back(given[i]);
+  }
 }
 
 int
@@ -145,7 +155,7 @@ TriangleTree::FindSquaredDistance(const Vector3 & x, int & triangle) const
   if (triangle >= 0)
   {
     // A bound alone: of equally near triangles it is the one that FindNearest finds.
-    const Triangle & t = m_Triangles[triangle];
+    const Triangle & t = this->GetTriangle(triangle);
     const double     squared = (ClosestPointOnTriangle(x, t[0], t[1], t[2]) - x).squaredNorm();
     nearest.squaredDistance = std::nextafter(squared, nearest.squaredDistance);
   }
@@ -173,7 +183,7 @@ TriangleTree::FindNearer(const Vector3 & x, Nearest & nearest) const
     {
       for (int i = node.begin; i < node.end; ++i)
       {
-        const Triangle & t = m_Triangles[m_Order[i]];
+        const Triangle & t = m_Triangles[i];
         const Vector3    point = ClosestPointOnTriangle(x, t[0], t[1], t[2]);
         const double     squared = (point - x).squaredNorm();
         if (squared < nearest.squaredDistance)
@@ -211,7 +221,7 @@ TriangleTree::IsWithin(const Vector3 & x, double squaredDistance) const
     }
     for (int i = node.begin; node.right < 0 && i < node.end; ++i)
     {
-      const Triangle & t = m_Triangles[m_Order[i]];
+      const Triangle & t = m_Triangles[i];
       if ((ClosestPointOnTriangle(x, t[0], t[1], t[2]) - x).squaredNorm() <= squaredDistance)
       {
         return true;

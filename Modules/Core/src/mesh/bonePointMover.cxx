@@ -145,20 +145,34 @@ PointMover::BoundaryCrosses(IdType p) const
   return false;
 }
 
+bool
+PointMover::FallsBelow(IdType p, const Vector3 & before, double cosineFloor)
+{
+  const double worst = this->WorstCosine(p);
+  if (worst <= cosineFloor)
+  {
+    return false;
+  }
+  const Vector3 x = m_Complex.Points()[p];
+  m_Complex.TryPoint(p, before);
+  const double former = this->WorstCosine(p);
+  m_Complex.TryPoint(p, x);
+  return worst > former;
+}
+
 MeshOperation
 PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
 {
   m_Execution.ThrowIfAborted();
   const auto &  points = m_Complex.Points();
   const Vector3 before = points[p];
-  const double  worst = cosineFloor < 1.0 ? WorstCosine(p) : 1.0;
   m_Complex.TryPoint(p, x);
   MeshOperation outcome = MeshOperation::Done;
   if (!StarIsPositive(p))
   {
     outcome = MeshOperation::Orientation;
   }
-  else if (cosineFloor < 1.0 && WorstCosine(p) > std::max(worst, cosineFloor))
+  else if (cosineFloor < 1.0 && this->FallsBelow(p, before, cosineFloor))
   {
     outcome = MeshOperation::Quality;
   }
@@ -177,10 +191,7 @@ PointMover::TryMove(IdType p, const Vector3 & x, double cosineFloor)
     {
       for (const TriangleIds & t : m_Boundary)
       {
-        m_Complex.TryPoint(p, before);
-        m_Grid.Erase(t, points);
-        m_Complex.TryPoint(p, x);
-        m_Grid.Insert(t, points);
+        m_Grid.Move(t, p, before, points);
       }
     }
   }
