@@ -53,8 +53,11 @@ def prepare(folder, shapes):
         subjects.write_text("".join(f"{shape}, {folder / shape.stem}.mha\n" for shape in shapes))
         run(bonetk, "train", subjects, "--standard", folder / "standard/model_L1.vtu", "--degree", 2, "--registered",
             registered, "--quiet", "-o", folder / "atlas.h5")
-        for file in registered.glob("*_*.vtu"):  # 001_NAME.vtu
-            file.rename(registered / file.name.split("_", 1)[1])
+        for file in sorted(registered.iterdir()):
+            if file.suffix == ".vtu":  # 001_NAME.vtu
+                file.rename(registered / file.name.split("_", 1)[1])
+            else:
+                file.unlink()  # what train knows a repetition by
     return registered
 
 

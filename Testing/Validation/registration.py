@@ -36,7 +36,7 @@ TIBIA = ("tibia, 1 mm CT", "tibia_ct/tibia", 2)
 VIEWS = (("two views, 90° apart", (0, 90), 200), ("two views, 30° apart", (0, 30), 200), ("one view", (0,), 100))
 FOUND_AGAIN = ("--view-translation-deviation", 0.6, "--view-rotation-deviation", 0.3)
 FARTHEST = 60  # mm, of the starts of the capture range
-BIN = 5  # mm
+BIN = 4  # mm
 # Trials whose seconds are not told: bones, count and options.
 CAPTURE = {"search and refinement": ([HIP], 400, "--mtre", FARTHEST),
            "refinement alone": ([HIP], 400, "--mtre", FARTHEST, "--searches", 0)}
