@@ -19,6 +19,7 @@
 #include "boneHierarchyIO.h"
 #include "boneIOError.h"
 #include "boneLabelCrop.h"
+#include "boneMemory.h"
 #include "boneMeshIO.h"
 #include "boneOutputTransaction.h"
 #include "boneRegistrationReport.h"
@@ -174,10 +175,9 @@ WriteResults(const Evaluation &  evaluation,
         spline.GetPointer(), in("spline_L" + std::to_string(level + 1) + ".vtu"), report.parameters.storage);
     }
   }
-  const std::pair<const Canvas *, const char *> pictures[] = { { &evaluation.slices, "slices.png" },
-                                                               { &evaluation.cutPlane, "cut_plane.png" },
-                                                               { &evaluation.radiographs, "radiographs.png" } };
-  Execution().For(std::size(pictures), [&](std::size_t k) { pictures[k].first->Write(in(pictures[k].second)); });
+  WriteFileAtomically(in("slices.png"), evaluation.slices.png);
+  WriteFileAtomically(in("cut_plane.png"), evaluation.cutPlane.png);
+  WriteFileAtomically(in("radiographs.png"), evaluation.radiographs.png);
 }
 
 /** All files beside the report are there. */
@@ -362,7 +362,8 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
   report.warnings = session.GetWarnings();
   {
     const auto stage = session.BeginStage("writing");
-    auto       page = RunBeside([&] {
+    ReturnFreedMemory(); // files and page are made at once
+    auto page = RunBeside([&] {
       if (options.page.IsOn())
       {
         WriteBuildPage(evaluation, evidence, report, pipeline, staging.GetPath() + "/report.html", session);

@@ -21,15 +21,22 @@ struct Evidence
   itk::ImageBase<3>::ConstPointer whole;
 };
 
+/** A picture as a file has it, and as a page has it. */
+struct EncodedPicture
+{
+  std::string png;
+  std::string jpeg;
+};
+
 /** The measurements of a built model and the pictures made on the way. */
 struct Evaluation
 {
   std::vector<LevelReport> levels;
   std::vector<double>      lowerDegrees; ///< of the finest level, see \ref LowerDegreeErrors
   Window                   window;       ///< of the CT in pictures
-  Canvas                   slices;       ///< of the CT with contours
-  Canvas                   cutPlane;     ///< the CT and the levels in the plane of the bone's largest extent
-  Canvas                   radiographs;  ///< of the CT and the levels, in the pipeline's view and from the side
+  EncodedPicture           slices;       ///< of the CT with contours
+  EncodedPicture           cutPlane;     ///< the CT and the levels in the plane of the bone's largest extent
+  EncodedPicture           radiographs;  ///< of the CT and the levels, in the pipeline's view and from the side
 };
 
 /** \class BuildEvaluator

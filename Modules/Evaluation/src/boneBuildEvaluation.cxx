@@ -7,6 +7,7 @@
 #include "boneDensityEvaluation.h"
 #include "boneDensityImageFilter.h"
 #include "boneExecution.h"
+#include "boneJpeg.h"
 #include "boneMemory.h"
 #include "boneTicks.h"
 #include "boneVoxelDRRImageFilter.h"
@@ -269,15 +270,19 @@ BuildEvaluator::Finish()
   Comparison cut = CompareCut(references.cut, evidence.ct, std::move(cuts), evaluation.window);
   cut.scale = RoundInRange(0.25 * range, range);
   cut.unit = unit;
-  const auto                  radiographs = CompareRadiographs(m_Pipeline, evidence, unit, evaluation.levels);
-  const std::function<void()> drawings[] = {
-    [&] {
-      evaluation.slices = DrawSlices(evidence.ct, m_Pipeline.GetContours(), evaluation.window, unit, evidence.whole);
-    },
-    [&] { evaluation.cutPlane = DrawComparison({ cut }); },
-    [&] { evaluation.radiographs = DrawComparison(radiographs); }
+  const auto radiographs = CompareRadiographs(m_Pipeline, evidence, unit, evaluation.levels);
+  const auto slices = [&] {
+    return DrawSlices(evidence.ct, m_Pipeline.GetContours(), evaluation.window, unit, evidence.whole);
   };
-  Execution().For(std::size(drawings), [&drawings](std::size_t k) { drawings[k](); });
+  const std::pair<EncodedPicture *, std::function<Canvas()>> pictures[] = {
+    { &evaluation.slices, slices },
+    { &evaluation.cutPlane, [&] { return DrawComparison({ cut }); } },
+    { &evaluation.radiographs, [&] { return DrawComparison(radiographs); } }
+  };
+  Execution().For(std::size(pictures), [&pictures](std::size_t k) {
+    const Canvas canvas = pictures[k].second(); // a canvas is one thread's
+    *pictures[k].first = { canvas.GetPng(), ToJpeg(canvas.GetImage()) };
+  });
   return evaluation;
 }
 } // namespace bone

@@ -5,7 +5,6 @@
 
 #include "boneChart.h"
 #include "boneDensityEvaluation.h"
-#include "boneJpeg.h"
 #include "bonePageData.h"
 
 #include <itkMath.h>
@@ -153,15 +152,15 @@ MakeBuildPage(const BuildReport & report,
   page.BeginSection("contours", "CT slices");
   page.AddSlices(PackSlices(
     evidence.ct, *stack, evaluation.window, DensityUnitName(meshes.front().quantity), SliceTitles(evidence, *stack)));
-  page.AddPicture(ToJpeg(evaluation.slices.GetImage()),
+  page.AddPicture(evaluation.slices.jpeg,
                   "CT slices over the length of the bone with its contours",
                   "Slices of the CT with the contours the model was made from");
   page.BeginSection("cut-plane", "Cut plane");
-  page.AddPicture(ToJpeg(evaluation.cutPlane.GetImage()),
+  page.AddPicture(evaluation.cutPlane.jpeg,
                   "CT, levels of the model and their differences on a plane along the bone",
                   "The CT and the levels of the model on the plane along which the bone extends most");
   page.BeginSection("radiographs", "Radiographs");
-  page.AddPicture(ToJpeg(evaluation.radiographs.GetImage()),
+  page.AddPicture(evaluation.radiographs.jpeg,
                   "Radiographs of the CT and of the levels, and their differences",
                   "Line integrals of density: those of the CT count the bone's voxels alone");
   page.BeginSection("density", "Density");

@@ -45,9 +45,10 @@ public:
   bool
   TryCollapse(IdType v, IdType w, double cosine, std::vector<IdType> & changed);
 
-  /** Cosine of the worst cell after the collapse v -> w, 2 where one would not be positive. */
+  /** Cosine of the worst cell after the collapse v -> w, 2 where one would not be positive; any value from `enough` on
+   * where it is that large. */
   double
-  WorstAfterCollapse(IdType v, IdType w) const;
+  WorstAfterCollapse(IdType v, IdType w, double enough = 2.0) const;
 
 private:
   bool

@@ -84,7 +84,7 @@ MeshRepair::FlipSurface(IdType t, std::vector<IdType> & changed)
 }
 
 double
-MeshRepair::WorstAfterCollapse(IdType v, IdType w) const
+MeshRepair::WorstAfterCollapse(IdType v, IdType w, double enough) const
 {
   const auto & p = m_Complex.Points();
   double       worst = -1.0;
@@ -101,6 +101,10 @@ MeshRepair::WorstAfterCollapse(IdType v, IdType w) const
       return 2.0;
     }
     worst = std::max(worst, LargestDihedralCosine(p[c[0]], p[c[1]], p[c[2]], p[c[3]]));
+    if (worst >= enough)
+    {
+      return worst;
+    }
   }
   return worst;
 }
@@ -147,7 +151,7 @@ MeshRepair::CollapseKeepsSurfaces(IdType v, IdType w)
 bool
 MeshRepair::TryCollapse(IdType v, IdType w, double cosine, std::vector<IdType> & changed)
 {
-  if (!(WorstAfterCollapse(v, w) < cosine) || m_Complex.CanCollapse(v, w) != MeshOperation::Done)
+  if (!(WorstAfterCollapse(v, w, cosine) < cosine) || m_Complex.CanCollapse(v, w) != MeshOperation::Done)
   {
     return false;
   }
@@ -258,7 +262,7 @@ MeshRepair::CollapseAt(IdType t, std::vector<IdType> & changed)
     {
       if (m_Complex.Dimension(v) == 3 || m_Complex.Dimension(w) <= m_Complex.Dimension(v))
       {
-        const double worst = WorstAfterCollapse(v, w);
+        const double worst = WorstAfterCollapse(v, w, limit);
         if (worst < limit)
         {
           candidates.push_back({ worst, v, w, limit });

@@ -57,9 +57,18 @@ private:
       return false;
     }
     m_Complex.SurfaceStar(v, m_Faces);
+    // Whether cells allow a collapse is quicker to see than what it changes.
+    const double        floor = std::max(m_Parameters.cosineFloor, m_Mover.WorstCosine(v));
+    std::vector<IdType> allowed = this->Neighbors();
+    const auto          refused = [&](IdType w) { return !(m_Repair.WorstAfterCollapse(v, w, floor) < floor); };
+    allowed.erase(std::remove_if(allowed.begin(), allowed.end(), refused), allowed.end());
+    if (allowed.empty())
+    {
+      return false;
+    }
     const SurfaceEnergy::Patch             patch = m_Energy.At(Around(v));
     std::vector<std::pair<double, IdType>> candidates;
-    for (IdType w : Neighbors())
+    for (IdType w : allowed)
     {
       const double change = m_Energy.Change(patch, Afterwards(w));
       if (change < 0)
@@ -68,7 +77,6 @@ private:
       }
     }
     std::sort(candidates.begin(), candidates.end());
-    const double        floor = std::max(m_Parameters.cosineFloor, m_Mover.WorstCosine(v));
     std::vector<IdType> changed;
     for (const auto & candidate : candidates)
     {
