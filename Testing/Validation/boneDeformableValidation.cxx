@@ -20,6 +20,7 @@
 #include <chrono>
 #include <ctime>
 #include <iostream>
+#include <limits>
 #include <numeric>
 
 namespace
@@ -35,6 +36,7 @@ struct Trials
   std::vector<double>            angles{ 0, 90 };
   int                            pixels{ 256 };
   double                         room{ 0.1 };
+  double                         share{ 1 };
   double                         translation{ 10 };
   double                         rotation{ 10 };
   std::uint64_t                  seed{ 1 };
@@ -74,6 +76,15 @@ Disturb(const RigidPose & pose, const Trials & trials, std::mt19937_64 & random)
   return pose.Moved(step);
 }
 
+/** x of the end of a share of the bone from its proximal end, which has the largest x; of all of it, none. */
+double
+LeastShown(const std::vector<Vector3> & points, double share)
+{
+  const auto [low, high] = std::minmax_element(
+    points.begin(), points.end(), [](const Vector3 & a, const Vector3 & b) { return a.x() < b.x(); });
+  return share < 1.0 ? high->x() - share * (high->x() - low->x()) : std::numeric_limits<double>::lowest();
+}
+
 void
 Run(const Trials & trials)
 {
@@ -87,14 +98,24 @@ Run(const Trials & trials)
     {
       continue;
     }
-    const auto      atlas = Train(subjects, name);
-    const auto      surface = ReadTriangleSurface(trials.shapes + "/" + name + ".ply");
-    const auto      ct = Embed(ReadCT(trials.cts + "/" + name + ".mha"), 40.0);
-    const AffineMap fit = FitAlignment(atlas.mean.points, truth.points, AlignmentKind::Rigid);
-    Vector3         centre = Vector3::Zero();
-    for (const Vector3 & x : atlas.mean.points)
+    const auto           atlas = Train(subjects, name);
+    const auto           surface = ReadTriangleSurface(trials.shapes + "/" + name + ".ply");
+    const auto           ct = Embed(ReadCT(trials.cts + "/" + name + ".mha"), 40.0);
+    const AffineMap      fit = FitAlignment(atlas.mean.points, truth.points, AlignmentKind::Rigid);
+    const double         from = LeastShown(truth.points, trials.share);
+    std::vector<Vector3> shown, inMean;
+    for (std::size_t p = 0; p < truth.points.size(); ++p)
     {
-      centre += x / static_cast<double>(atlas.mean.points.size());
+      if (truth.points[p].x() >= from)
+      {
+        shown.push_back(truth.points[p]);
+        inMean.push_back(atlas.mean.points[p]);
+      }
+    }
+    Vector3 centre = Vector3::Zero();
+    for (const Vector3 & x : inMean)
+    {
+      centre += x / static_cast<double>(inMean.size());
     }
     const RigidPose right{ fit.linear, fit(centre) - centre, centre };
 
@@ -108,7 +129,7 @@ Run(const Trials & trials)
     {
       x = right.Apply(x);
     }
-    put("meanShape", Compare(mesh, surface));
+    put("meanShape", Compare(mesh, surface, from));
     std::vector<Vector3> inAtlas;
     const AffineMap      back = AlignToMean(truth.points, atlas.mean.points, AlignmentKind::Rigid);
     for (const Vector3 & x : truth.points)
@@ -120,16 +141,15 @@ Run(const Trials & trials)
     {
       x = back.Inverse()(x);
     }
-    put("projection", Compare(mesh, surface));
+    put("projection", Compare(mesh, surface, from));
 
     std::vector<RadiographView> views;
     for (const double angle : trials.angles)
     {
-      views.push_back(
-        Simulate(ct,
-                 MakeView(truth.points, Vector3::UnitY(), Vector3::UnitX(), angle, trials.pixels, trials.room),
-                 trials.simulation,
-                 random));
+      views.push_back(Simulate(ct,
+                               MakeView(shown, Vector3::UnitY(), Vector3::UnitX(), angle, trials.pixels, trials.room),
+                               trials.simulation,
+                               random));
     }
     const RigidPose start = Disturb(right, trials, random);
     const auto      clock = std::chrono::steady_clock::now();
@@ -143,7 +163,7 @@ Run(const Trials & trials)
       });
     row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     row["processorSeconds"] = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
-    put("found", Compare(result.mesh, surface));
+    put("found", Compare(result.mesh, surface, from));
     // Moved onto the truth: of the shape alone, as one view does not tell the depth.
     MeshArrays      aligned = result.mesh;
     const AffineMap onto = FitAlignment(aligned.points, truth.points, AlignmentKind::Rigid);
@@ -151,12 +171,16 @@ Run(const Trials & trials)
     {
       x = onto(x);
     }
-    put("aligned", Compare(aligned, surface));
+    put("aligned", Compare(aligned, surface, from));
     row["quality"] = static_cast<int>(result.quality);
     row["distinctness"] = result.distinctness;
     double inside = 0.0, squares = 0.0, deviations = 0.0, points = 0.0;
     for (std::size_t p = 0; p < truth.points.size(); ++p)
     {
+      if (truth.points[p].x() < from)
+      {
+        continue;
+      }
       const Vector3 d = result.mesh.points[p] - truth.points[p];
       for (int k = 0; k < 3; ++k)
       {
@@ -232,6 +256,8 @@ main(int argc, char * argv[])
   app.add_option("--angles", trials.angles, "Of the views about the bone's axis, degrees");
   app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
   app.add_option("--room", trials.room, "On each side of the bone in the X-rays, of the box about it");
+  app.add_option(
+    "--share", trials.share, "Of the bone's length from its proximal end, which X-rays and distances are of");
   app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");
   app.add_option("--rotation", trials.rotation, "and so many degrees about each");
   app.add_option("--seed", trials.seed);

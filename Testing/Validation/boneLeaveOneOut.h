@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,9 +63,9 @@ struct Distances
   double most{ 0.0 }; ///< 95 %
 };
 
-/** Of both surfaces' vertices to the other surface. */
+/** Of both surfaces' vertices to the other surface. \param from  least x of vertices that count */
 inline Distances
-Compare(const MeshArrays & mesh, const TriangleSurface & truth)
+Compare(const MeshArrays & mesh, const TriangleSurface & truth, double from = std::numeric_limits<double>::lowest())
 {
   std::vector<TriangleTree::Triangle> ofMesh, ofTruth;
   std::vector<bool>                   outside(mesh.points.size(), false);
@@ -84,14 +85,17 @@ Compare(const MeshArrays & mesh, const TriangleSurface & truth)
   std::vector<double> all;
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
   {
-    if (outside[p])
+    if (outside[p] && mesh.points[p].x() >= from)
     {
       all.push_back(std::sqrt(truthTree.FindNearest(mesh.points[p]).squaredDistance));
     }
   }
   for (std::size_t i = 0; i < truth.points.size(); i += 4)
   {
-    all.push_back(std::sqrt(meshTree.FindNearest(truth.points[i]).squaredDistance));
+    if (truth.points[i].x() >= from)
+    {
+      all.push_back(std::sqrt(meshTree.FindNearest(truth.points[i]).squaredDistance));
+    }
   }
   std::sort(all.begin(), all.end());
   Distances result;

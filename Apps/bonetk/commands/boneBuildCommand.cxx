@@ -104,7 +104,6 @@ Complete(BuildOptions options)
 
 void
 WriteBuildPage(const Evaluation &  evaluation,
-               const Evidence &    evidence,
                const BuildReport & report,
                BuildPipeline &     pipeline,
                const std::string & path,
@@ -114,7 +113,7 @@ WriteBuildPage(const Evaluation &  evaluation,
   BuildParameters::Visit(report.parameters, [&parameters](const std::string & stage, const auto & of) {
     AddParameters(stage, of, parameters);
   });
-  ReportPage page = MakeBuildPage(report, evaluation, evidence, pipeline);
+  ReportPage page = MakeBuildPage(report, evaluation, pipeline);
   WritePage(page, path, session, std::move(parameters), report.times);
 }
 
@@ -325,8 +324,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
     session.Watch(filter, name);
   }
   report.resolution = Plan(input, parameters, pipeline, session);
-  const Evidence evidence{ input.ct, input.labels, ct };
-  BuildEvaluator evaluator(evidence, pipeline);
+  BuildEvaluator evaluator({ input.ct, input.labels, ct }, options.page.IsOn(), pipeline);
   try
   {
     FinishBuild(plan, nullptr, pipeline);
@@ -366,7 +364,7 @@ BuildBone(const BuildOptions & options, const CTImage * ct, const BuildJob & job
     auto page = RunBeside([&] {
       if (options.page.IsOn())
       {
-        WriteBuildPage(evaluation, evidence, report, pipeline, staging.GetPath() + "/report.html", session);
+        WriteBuildPage(evaluation, report, pipeline, staging.GetPath() + "/report.html", session);
       }
     });
     WriteResults(evaluation, report, pipeline, staging.GetPath());

@@ -9,6 +9,7 @@
 
 #include <future>
 #include <memory>
+#include <optional>
 
 namespace bone
 {
@@ -28,15 +29,22 @@ struct EncodedPicture
   std::string jpeg;
 };
 
+/** What takes long of a build's page. */
+struct BuildPageParts
+{
+  nlohmann::json      finest;       ///< \ref PackLevel
+  nlohmann::json      slices;       ///< \ref PackSlices
+  std::vector<double> lowerDegrees; ///< of the finest level, see \ref LowerDegreeErrors
+};
+
 /** The measurements of a built model and the pictures made on the way. */
 struct Evaluation
 {
-  std::vector<LevelReport> levels;
-  std::vector<double>      lowerDegrees; ///< of the finest level, see \ref LowerDegreeErrors
-  Window                   window;       ///< of the CT in pictures
-  EncodedPicture           slices;       ///< of the CT with contours
-  EncodedPicture           cutPlane;     ///< the CT and the levels in the plane of the bone's largest extent
-  EncodedPicture           radiographs;  ///< of the CT and the levels, in the pipeline's view and from the side
+  std::vector<LevelReport>      levels;
+  EncodedPicture                slices;      ///< of the CT with contours
+  EncodedPicture                cutPlane;    ///< the CT and the levels in the plane of the bone's largest extent
+  EncodedPicture                radiographs; ///< of the CT and the levels, in the pipeline's view and from the side
+  std::optional<BuildPageParts> page;        ///< where one was asked for
 };
 
 /** \class BuildEvaluator
@@ -48,15 +56,16 @@ struct Evaluation
  *
  * \code
  *   PlanBuild(input, parameters, pipeline);
- *   BuildEvaluator   evaluator(evidence, pipeline);
+ *   BuildEvaluator   evaluator(evidence, true, pipeline);
  *   FinishBuild(plan, nullptr, pipeline);
  *   const Evaluation evaluation = evaluator.Finish();
  * \endcode */
 class BuildEvaluator
 {
 public:
-  /** Brings the density fit up to date. \param pipeline  must outlive this */
-  BuildEvaluator(const Evidence & evidence, BuildPipeline & pipeline);
+  /** Brings the density fit up to date. \param pipeline  must outlive this
+   *  \param page  whether \ref MakeBuildPage is to follow */
+  BuildEvaluator(const Evidence & evidence, bool page, BuildPipeline & pipeline);
   /** Waits for the thread. */
   ~BuildEvaluator();
   BuildEvaluator(const BuildEvaluator &) = delete;

@@ -8,13 +8,16 @@
 
 namespace bone
 {
+/** The finest level and the CT's slices as a page has them; LowerDegreeErrors is left to the caller. */
+BuildPageParts
+PackPageParts(const Evidence & evidence, const ContourStack & stack, const MeshArrays & finest, const Window & window);
+
 /** A page of a build: the levels' figures, the model in 3D with its contours, CT slices, cut plane, radiographs,
- * density and quality. `ct` as it was given to Evaluate; the pipeline is up to date. The caller adds the provenance. */
+ * density and quality. Of an evaluation with a page's parts; the pipeline is up to date. The caller adds the
+ * provenance.
+ */
 ReportPage
-MakeBuildPage(const BuildReport & report,
-              const Evaluation &  evaluation,
-              const Evidence &    evidence,
-              BuildPipeline &     pipeline);
+MakeBuildPage(const BuildReport & report, const Evaluation & evaluation, BuildPipeline & pipeline);
 } // namespace bone
 
 #endif

@@ -3,6 +3,7 @@
  *=========================================================================*/
 #include "boneBuildEvaluation.h"
 
+#include "boneBuildPage.h"
 #include "boneBuildPlan.h"
 #include "boneDensityEvaluation.h"
 #include "boneDensityImageFilter.h"
@@ -30,7 +31,8 @@ struct References
   Evidence                            evidence; ///< with a mask
   std::optional<SurfaceDistanceMeter> distances;
   PlaneView                           cut;
-  std::array<double, 2>               percentiles; ///< of the CT in the mask
+  double                              range{ 0.0 }; ///< of 98 % of the CT in the mask
+  Window                              window;       ///< of the CT in pictures
 };
 
 /** What is measured and drawn of a level by itself. */
@@ -154,7 +156,10 @@ MakeReferences(const Evidence & evidence, const MeshArrays & finest)
     references.distances.emplace(evidence.mask);
   }
   references.cut = FrameLargestCut(finest.points, 5.0, 420);
-  references.percentiles = PercentileRange(evidence.ct, references.evidence.mask);
+  const auto [low, high] = PercentileRange(evidence.ct, references.evidence.mask);
+  references.range = high - low;
+  references.window = { RoundInRange(low - 0.3 * references.range, references.range),
+                        RoundInRange(high + 0.05 * references.range, references.range) };
   return references;
 }
 
@@ -216,21 +221,32 @@ CompareRadiographs(BuildPipeline &            pipeline,
 /** What is known before the coarser levels are. */
 struct BuildEvaluator::Begun
 {
-  References          references;
-  LevelFindings       finest;
-  std::vector<double> lowerDegrees;
+  References                    references;
+  LevelFindings                 finest;
+  std::optional<BuildPageParts> page;
 };
 
-BuildEvaluator::BuildEvaluator(const Evidence & evidence, BuildPipeline & pipeline)
+BuildEvaluator::BuildEvaluator(const Evidence & evidence, bool page, BuildPipeline & pipeline)
   : m_Pipeline(pipeline)
 {
+  ContourStack::Pointer contours = pipeline.GetContours();
+  contours->Update();
   ReturnFreedMemory();
-  m_Begun = RunBeside([evidence, finest = pipeline.GetFinest()] {
-    const MeshArrays    arrays = finest->GetArrays();
-    References          references = MakeReferences(evidence, arrays);
-    LevelFindings       findings = FindOut(finest, 0, references);
-    std::vector<double> lower = LowerDegreeErrors(arrays, evidence.ct, references.evidence.mask);
-    return std::make_unique<Begun>(Begun{ std::move(references), std::move(findings), std::move(lower) });
+  m_Begun = RunBeside([evidence, page, contours, finest = pipeline.GetFinest()] {
+    const MeshArrays arrays = finest->GetArrays();
+    auto             begun = std::make_unique<Begun>();
+    begun->references = MakeReferences(evidence, arrays);
+    // First what takes one thread: loops share what the collapse leaves, and all processors after it.
+    if (page)
+    {
+      begun->page = PackPageParts(evidence, *contours, arrays, begun->references.window);
+    }
+    begun->finest = FindOut(finest, 0, begun->references);
+    if (page)
+    {
+      begun->page->lowerDegrees = LowerDegreeErrors(arrays, evidence.ct, begun->references.evidence.mask);
+    }
+    return begun;
   });
 }
 
@@ -261,18 +277,15 @@ BuildEvaluator::Finish()
   references.distances.reset();
   ReturnFreedMemory(); // radiographs of the CT take a copy of it for a time
 
-  const auto &      percentiles = references.percentiles;
-  const double      range = percentiles[1] - percentiles[0];
   const std::string unit = DensityUnitName(levels.front().mesh->GetArrays().quantity);
-  evaluation.lowerDegrees = std::move(begun->lowerDegrees);
-  evaluation.window = { RoundInRange(percentiles[0] - 0.3 * range, range),
-                        RoundInRange(percentiles[1] + 0.05 * range, range) };
-  Comparison cut = CompareCut(references.cut, evidence.ct, std::move(cuts), evaluation.window);
+  const double      range = references.range;
+  evaluation.page = std::move(begun->page);
+  Comparison cut = CompareCut(references.cut, evidence.ct, std::move(cuts), references.window);
   cut.scale = RoundInRange(0.25 * range, range);
   cut.unit = unit;
   const auto radiographs = CompareRadiographs(m_Pipeline, evidence, unit, evaluation.levels);
   const auto slices = [&] {
-    return DrawSlices(evidence.ct, m_Pipeline.GetContours(), evaluation.window, unit, evidence.whole);
+    return DrawSlices(evidence.ct, m_Pipeline.GetContours(), references.window, unit, evidence.whole);
   };
   const std::pair<EncodedPicture *, std::function<Canvas()>> pictures[] = {
     { &evaluation.slices, slices },

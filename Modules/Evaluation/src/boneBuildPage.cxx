@@ -26,9 +26,9 @@ NameOfBone(const BuildFiles & files)
 }
 
 std::string
-LevelTitle(std::size_t level, const LevelReport & report)
+LevelTitle(std::size_t level, const MeshArrays & mesh)
 {
-  return "level " + std::to_string(level + 1) + ", " + std::to_string(report.tetrahedra) + " tetrahedra";
+  return "level " + std::to_string(level + 1) + ", " + std::to_string(mesh.tetrahedra.size()) + " tetrahedra";
 }
 
 std::vector<std::string>
@@ -124,13 +124,20 @@ AddQualityCharts(const BuildReport & report, ReportPage & page)
 }
 } // namespace
 
-ReportPage
-MakeBuildPage(const BuildReport & report,
-              const Evaluation &  evaluation,
-              const Evidence &    evidence,
-              BuildPipeline &     pipeline)
+BuildPageParts
+PackPageParts(const Evidence & evidence, const ContourStack & stack, const MeshArrays & finest, const Window & window)
 {
-  ReportPage page(NameOfBone(report.files), "build");
+  const std::string unit = DensityUnitName(finest.quantity);
+  return { PackLevel(LevelTitle(0, finest), finest, PictureStep(finest)),
+           PackSlices(evidence.ct, stack, window, unit, SliceTitles(evidence, stack)),
+           {} };
+}
+
+ReportPage
+MakeBuildPage(const BuildReport & report, const Evaluation & evaluation, BuildPipeline & pipeline)
+{
+  const BuildPageParts & parts = evaluation.page.value();
+  ReportPage             page(NameOfBone(report.files), "build");
   page.SetWarnings(report.warnings);
   const auto &            levels = pipeline.GetHierarchy()->GetLevels();
   const ContourStack *    stack = pipeline.GetContours();
@@ -142,16 +149,15 @@ MakeBuildPage(const BuildReport & report,
   std::vector<NamedMesh> named;
   for (std::size_t i = 0; i < meshes.size(); ++i)
   {
-    named.push_back({ LevelTitle(i, report.levels[i]), &meshes[i] });
+    named.push_back({ LevelTitle(i, meshes[i]), &meshes[i] });
   }
   page.BeginSection("model", "Model");
-  page.AddModel(PackModel(named, stack, {}));
+  page.AddModel(PackModel(named, stack, {}, parts.finest));
   page.BeginSection("levels", "Levels");
   page.AddText(Headline(report) + ".");
   page.AddTable(LevelTable(report));
   page.BeginSection("contours", "CT slices");
-  page.AddSlices(PackSlices(
-    evidence.ct, *stack, evaluation.window, DensityUnitName(meshes.front().quantity), SliceTitles(evidence, *stack)));
+  page.AddSlices(parts.slices);
   page.AddPicture(evaluation.slices.jpeg,
                   "CT slices over the length of the bone with its contours",
                   "Slices of the CT with the contours the model was made from");
@@ -164,7 +170,7 @@ MakeBuildPage(const BuildReport & report,
                   "Radiographs of the CT and of the levels, and their differences",
                   "Line integrals of density: those of the CT count the bone's voxels alone");
   page.BeginSection("density", "Density");
-  AddDensityCharts(report, evaluation.lowerDegrees, page);
+  AddDensityCharts(report, parts.lowerDegrees, page);
   page.BeginSection("quality", "Quality of the tetrahedra");
   AddQualityCharts(report, page);
   return page;

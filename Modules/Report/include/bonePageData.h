@@ -59,11 +59,13 @@ struct NamedMesh
 };
 
 /** The levels of a model, finest first, with contours and landmarks where there are any (`contours` may be null). Needs
- * one level at least. */
+ * one level at least. \param finest  the first level where it is packed already: \ref PackLevel by its \ref PictureStep
+ */
 nlohmann::json
 PackModel(const std::vector<NamedMesh> & levels,
           const ContourStack *           contours,
-          const std::vector<Landmark> &  landmarks);
+          const std::vector<Landmark> &  landmarks,
+          const nlohmann::json &         finest = nullptr);
 
 /** The CT on every slice of a stack in grey, with the slice's contours: values within the window as a JPEG, pixels as
  * small as 600,000 of them allow, but not smaller than voxels. `titles`: one a slice. */

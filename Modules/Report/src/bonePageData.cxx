@@ -336,14 +336,17 @@ PackLevel(const std::string & name, const MeshArrays & mesh, double coefficientS
 }
 
 nlohmann::json
-PackModel(const std::vector<NamedMesh> & levels, const ContourStack * contours, const std::vector<Landmark> & landmarks)
+PackModel(const std::vector<NamedMesh> & levels,
+          const ContourStack *           contours,
+          const std::vector<Landmark> &  landmarks,
+          const nlohmann::json &         finest)
 {
-  const MeshArrays & finest = *levels.front().mesh;
-  nlohmann::json     model = DescribeDensity(finest);
-  const double       step = PictureStep(finest);
+  nlohmann::json model = DescribeDensity(*levels.front().mesh);
+  const double   step = PictureStep(*levels.front().mesh);
   for (const NamedMesh & level : levels)
   {
-    model["levels"].push_back(PackLevel(level.name, *level.mesh, step));
+    const bool packed = &level == &levels.front() && !finest.is_null();
+    model["levels"].push_back(packed ? finest : PackLevel(level.name, *level.mesh, step));
   }
   if (contours != nullptr)
   {
