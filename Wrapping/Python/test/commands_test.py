@@ -288,7 +288,7 @@ class Running(TestCase):
         self.assertEqual(shares, sorted(shares))
         self.assertGreater(len(set(shares)), 20)
         self.assertLess(max(b - a for a, b in zip(shares, shares[1:])), 0.3)
-        self.assertTrue({"contours", "quality", "evaluation"} <= {stage for stage, _ in told})
+        self.assertIn("quality", {stage for stage, _ in told})  # shorter ones may pass untold
         self.assertEqual(threads, {threading.get_ident()})
 
     def test_exception_of_progress(self):
