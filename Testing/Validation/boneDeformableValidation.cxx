@@ -3,8 +3,8 @@
  *=========================================================================*/
 // boneDeformableValidation REGISTERED CTS SHAPES: leave-one-out over subjects NAME: trains an atlas of the others'
 // REGISTERED/NAME.vtu, simulates X-rays of CTS/NAME.mha, and finds shape and density from starts that are off. Prints a
-// JSON line a subject: distances to the surface SHAPES/NAME.ply (mm) of the mean, of the best projection on the
-// atlas' modes, and of what was found; how many of the 95 % intervals hold the truth; seconds.
+// JSON line a subject: why it was refused, or distances to the surface SHAPES/NAME.ply (mm) of the mean, of the best
+// projection on the atlas' modes, and of what was found; how many of the 95 % intervals hold the truth; seconds.
 #include "boneLeaveOneOut.h"
 #include "boneXRaySimulation.h"
 
@@ -101,7 +101,6 @@ Run(const Trials & trials)
     const auto           atlas = Train(subjects, name);
     const auto           surface = ReadTriangleSurface(trials.shapes + "/" + name + ".ply");
     const auto           ct = Embed(ReadCT(trials.cts + "/" + name + ".mha"), 40.0);
-    const AffineMap      fit = FitAlignment(atlas.mean.points, truth.points, AlignmentKind::Rigid);
     const double         from = LeastShown(truth.points, trials.share);
     std::vector<Vector3> shown, inMean;
     for (std::size_t p = 0; p < truth.points.size(); ++p)
@@ -112,7 +111,8 @@ Run(const Trials & trials)
         inMean.push_back(atlas.mean.points[p]);
       }
     }
-    Vector3 centre = Vector3::Zero();
+    const AffineMap fit = FitAlignment(inMean, shown, AlignmentKind::Rigid);
+    Vector3         centre = Vector3::Zero();
     for (const Vector3 & x : inMean)
     {
       centre += x / static_cast<double>(inMean.size());
@@ -151,22 +151,39 @@ Run(const Trials & trials)
                                trials.simulation,
                                random));
     }
-    const RigidPose start = Disturb(right, trials, random);
-    const auto      clock = std::chrono::steady_clock::now();
-    const auto      used = std::clock();
-    const auto      result = RegisterDeformable(
-      atlas, views, start, trials.parameters, Execution(), [&](const Eigen::VectorXd & c, double cost) {
-        if (trials.trace)
-        {
-          std::cerr << cost << " |c|^2 " << c.squaredNorm() << " of " << c.size() << std::endl;
-        }
-      });
+    const RigidPose              start = Disturb(right, trials, random);
+    const auto                   clock = std::chrono::steady_clock::now();
+    const auto                   used = std::clock();
+    DeformableRegistrationResult result;
+    try
+    {
+      result = RegisterDeformable(
+        atlas, views, start, trials.parameters, Execution(), [&](const Eigen::VectorXd & c, double cost) {
+          if (trials.trace)
+          {
+            std::cerr << cost << " |c|^2 " << c.squaredNorm() << " of " << c.size() << std::endl;
+          }
+        });
+    }
+    catch (const std::invalid_argument & error)
+    {
+      std::cout << nlohmann::json{ { "subject", name }, { "refused", error.what() } } << std::endl;
+      continue;
+    }
     row["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     row["processorSeconds"] = static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
     put("found", Compare(result.mesh, surface, from));
     // Moved onto the truth: of the shape alone, as one view does not tell the depth.
-    MeshArrays      aligned = result.mesh;
-    const AffineMap onto = FitAlignment(aligned.points, truth.points, AlignmentKind::Rigid);
+    MeshArrays           aligned = result.mesh;
+    std::vector<Vector3> found;
+    for (std::size_t p = 0; p < truth.points.size(); ++p)
+    {
+      if (truth.points[p].x() >= from)
+      {
+        found.push_back(aligned.points[p]);
+      }
+    }
+    const AffineMap onto = FitAlignment(found, shown, AlignmentKind::Rigid);
     for (Vector3 & x : aligned.points)
     {
       x = onto(x);

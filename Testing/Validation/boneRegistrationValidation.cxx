@@ -19,9 +19,11 @@
 #include <itkEuler3DTransform.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <iostream>
+#include <iterator>
 #include <random>
 
 namespace
@@ -38,6 +40,8 @@ struct Trials
   double                    translation{ 20 };
   double                    rotation{ 20 };
   double                    mtre{ 0 };
+  int                       axis{ 2 };
+  double                    share{ 1 };
   std::array<double, 2>     viewError{}; // mm, degrees
   bool                      alone{ false };
   int                       rayCasting{ 0 };
@@ -155,6 +159,20 @@ Describe(const RigidRegistrationResult & result, const std::vector<Vector3> & po
   return row;
 }
 
+/** Those of the points in a share of their extent along an axis, from its end of the largest coordinate. */
+std::vector<Vector3>
+TakeShare(const std::vector<Vector3> & points, int axis, double share)
+{
+  const auto [low, high] = std::minmax_element(
+    points.begin(), points.end(), [axis](const Vector3 & a, const Vector3 & b) { return a[axis] < b[axis]; });
+  const double         least = (*high)[axis] - share * ((*high)[axis] - (*low)[axis]);
+  std::vector<Vector3> taken;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(taken), [axis, least, share](const Vector3 & x) {
+    return share >= 1.0 || x[axis] >= least;
+  });
+  return taken;
+}
+
 std::vector<RigidRegistrationResult>
 Register(const Trials &                               trials,
          const CTImage *                              ct,
@@ -189,10 +207,11 @@ Run(const Trials & trials)
   for (const std::string & path : trials.models)
   {
     models.push_back(ReadLevels(path));
-    all.insert(all.end(), models.back().front().points.begin(), models.back().front().points.end());
+    const auto shown = TakeShare(models.back().front().points, trials.axis, trials.share);
+    all.insert(all.end(), shown.begin(), shown.end());
   }
-  const auto & points = models.front().front().points;
-  Vector3      centre = Vector3::Zero();
+  const auto points = TakeShare(models.front().front().points, trials.axis, trials.share);
+  Vector3    centre = Vector3::Zero();
   for (const Vector3 & x : points)
   {
     centre += x / static_cast<double>(points.size());
@@ -201,7 +220,7 @@ Run(const Trials & trials)
   std::vector<RadiographView> views;
   for (const double angle : trials.angles)
   {
-    const auto view = MakeView(all, Vector3::UnitY(), Vector3::UnitZ(), angle, trials.pixels);
+    const auto view = MakeView(all, Vector3::UnitY(), Vector3::Unit(trials.axis), angle, trials.pixels);
     views.push_back(Simulate(ct, view, trials.simulation, random));
   }
   const Vector3 depth = views.front().view.detectorU.cross(views.front().view.detectorV).normalized();
@@ -237,7 +256,10 @@ main(int argc, char * argv[])
   CLI::App app("Rigid registration to simulated X-rays from many starts");
   app.add_option("ct", trials.ct)->required();
   app.add_option("models", trials.models, "Several: registered together")->required();
-  app.add_option("--angles", trials.angles, "Of the views about z from the front, degrees");
+  app.add_option("--angles", trials.angles, "Of the views about the upright axis from the front, degrees");
+  app.add_option("--axis", trials.axis, "Upright in the X-rays: 0 (x) or 2 (z)");
+  app.add_option(
+    "--share", trials.share, "Of the models' extent along it, from above, which X-rays, starts and errors are of");
   app.add_option("--count", trials.count, "Starts");
   app.add_option("--pixels", trials.pixels, "Of a side of the X-rays");
   app.add_option("--translation", trials.translation, "Starts are off by up to so many mm along each axis");

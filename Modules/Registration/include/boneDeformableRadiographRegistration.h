@@ -23,8 +23,8 @@ namespace bone
  * Outputs:
  * - the bone found, a \ref DensityMesh of the atlas' topology in the geometry's space, mm: GetOutput(). Tetrahedra that
  *   the shape inverts are repaired, with a warning (UntangleMesh), which moves some points a little;
- * - an itk::Euler3DTransform from the space of the atlas to the geometry's, decorated, its centre the mean of the
- *   points of the atlas' mean: GetTransformOutput(), GetTransform().
+ * - an itk::Euler3DTransform from the space of the atlas to the geometry's, decorated, its centre the middle
+ *   of what the views show of the atlas' mean at the start: GetTransformOutput(), GetTransform().
  * GetResult() has coefficients in standard deviations, covariance and the deviations of the points.
  *
  * Parameters: \ref DeformableRadiographParameters. Each step invokes an itk::IterationEvent, at which

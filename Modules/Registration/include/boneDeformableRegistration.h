@@ -31,7 +31,7 @@ struct RegionEstimate
  * \brief What comes of a deformable registration: the most probable bone, and how sure it is. */
 struct DeformableRegistrationResult
 {
-  RigidPose       pose;         ///< of the atlas, about the mean of its points
+  RigidPose       pose; ///< of the atlas, about the mean of those of its points that the views show at the start
   Eigen::VectorXd coefficients; ///< standard deviations: modes of shape, smooth modes, modes of density
   Eigen::Index    shapeModes{ 0 };
   Eigen::Index    smoothModes{ 0 };
@@ -57,7 +57,8 @@ struct DeformableRegistrationResult
  *
  * The bone is the atlas' mean, moved by a pose, by its modes of shape and by smooth displacements of what a few
  * subjects' modes leave out (ResidualModes), with its modes of density and one density for each region as a whole. From
- * `initial`, an evolution strategy searches the pose and the first modes of shape. Then Levenberg-Marquardt steps over
+ * `initial`, an evolution strategy searches the pose and the first modes of shape, about the middle of what the views
+ * show of the mean there: X-rays of a part of a long bone say little of the rest. Then Levenberg-Marquardt steps over
  * all parameters, from coarse to fine images, find the maximum of the posterior. The prior is a standard normal
  * distribution of all coefficients, the likelihood exp(-precision * cost) with the cost of PatchGradientCorrelation, on
  * the finest images times that of IntensityDifference near the bone, where the X-rays are line integrals of
@@ -65,7 +66,7 @@ struct DeformableRegistrationResult
  * separate blocks of the images scatter: it needs no model of the noise, and counts noise that correlates over a block
  * once.
  *
- * The quality is that of RegisterRigid for the bone found, but from one view Suspect where the distinctness is below 2.
+ * The quality is that of RegisterRigid for the bone found, but Suspect where the distinctness is below 1.5.
  * Throws std::invalid_argument where a view cannot be used, where its values are no line integrals of attenuation and
  * Intensities is on, where the atlas has fewer than four subjects and SmoothDeviation is 0, and where one view alone is
  * given without a prior of the pose: size and depth could not be told apart. */

@@ -20,9 +20,10 @@ namespace bone
  * - views "Radiograph<v>", "Geometry<v>" and "Weights<v>", and "InitialTransform": \ref RadiographRegistrationBase.
  *
  * Outputs: for each body an itk::Euler3DTransform from the model's space to the geometry's, decorated, its centre the
- * mean of the points of the first level: GetTransform(body). GetResult(body) says how far it is to be trusted. One view
- * tells depth poorly, which the covariance shows. GetViewCorrections() has where the views are, where
- * ViewTranslationDeviation or ViewRotationDeviation says that their geometries may be off.
+ * mean of those points of the first level that the views show, or nearly, at the start: GetTransform(body).
+ * GetResult(body) says how far it is to be trusted. One view tells depth poorly, which the covariance shows.
+ * GetViewCorrections() has where the views are, where ViewTranslationDeviation or ViewRotationDeviation says that their
+ * geometries may be off.
  *
  * Parameters: \ref RigidRadiographParameters. Each step of the refinement invokes an itk::IterationEvent, at which
  * GetCurrentPose() (of the body that is refined; of the first one, where all are) and GetCurrentCost() are the step's.

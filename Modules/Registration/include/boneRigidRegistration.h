@@ -32,17 +32,18 @@ struct ParameterChoices<RegistrationQuality>
  * \brief What comes of a rigid registration. */
 struct RigidRegistrationResult
 {
-  RigidPose           pose; ///< about the model's centre, which is the mean of its points
-  double              cost{ 1.0 };
+  RigidPose pose; ///< about the model's centre: the mean of those points that the views show, or nearly, at the start
+  double    cost{ 1.0 };
   std::vector<double> costs; ///< of each view
   /** Of translation (mm) and rotation vector (radians) about the model's centre, along the geometry's axes. */
   Eigen::Matrix<double, 6, 6> covariance{ Eigen::Matrix<double, 6, 6>::Zero() };
   bool                        converged{ false }; ///< the refinement ended before its steps ran out
   RegistrationQuality         quality{ RegistrationQuality::Failed };
   /** How much the cost rises, on average over the six motions, where the model is moved by 8 mm, over the cost. A wrong
-   * minimum is flat: with two views, on four bones, true poses have 0.42 and more, wrong ones that no loose motion gives
-   * away (see leastDistinctness) 0.32 and less; 0.38 is Ok. One view does not always tell: wrong poses of a long bone
-   * have up to 1 (see ambiguous); 0.45 is Ok there. */
+   * minimum is flat: with two views, on four bones, true poses have 0.42 and more, wrong ones that no loose motion
+   * gives away (see leastDistinctness) 0.32 and less; 0.38 is Ok, though a search takes a pose below 0.8 for Ok only
+   * where it found that twice. One view does not always tell: wrong poses of a long bone have up to 1 (see ambiguous);
+   * 0.45 is Ok there. */
   double distinctness{ 0.0 };
   /** The same of the one among twelve motions, each way along and about the model's principal axes, that raises the
    * cost least. A pose that edges of something else hold in place, such as those of a cropped CT, slides along them:

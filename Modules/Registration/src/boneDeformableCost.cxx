@@ -61,8 +61,7 @@ DeformableCost::DeformableCost(const DeformableModel &                model,
   m_Images.resize(views.size());
   m_Attenuation.scale = parameters.attenuationSlope;
   m_Attenuation.offset = -parameters.attenuationSlope * parameters.softTissue;
-  // About as wide a patch of the bone at each resolution.
-  const int patch = std::max(4, parameters.patch * pixels / parameters.pixels);
+  const int patch = PatchAt(pixels, parameters);
   for (const RadiographView & view : views)
   {
     m_Views.push_back(ReduceView(view, ReductionTo(view.view, pixels)));
@@ -75,6 +74,12 @@ DeformableCost::DeformableCost(const DeformableModel &                model,
       throw std::invalid_argument("View " + std::to_string(m_Views.size()) + ": " + error.what() + '.');
     }
   }
+}
+
+int
+DeformableCost::PatchAt(int pixels, const DeformableRadiographParameters & parameters)
+{
+  return std::max(4, parameters.patch * pixels / parameters.pixels);
 }
 
 std::vector<std::vector<float>>
@@ -132,8 +137,9 @@ DeformableCost::UseIntensities(const DeformableState & state, const Execution & 
     if (!(gain > 1.0 / mostGain && gain < mostGain))
     {
       throw std::invalid_argument("View " + std::to_string(v + 1) + ": its values are " + std::to_string(gain) +
-                                  " times the line integrals of the bone found, so they are no line integrals of "
-                                  "attenuation: turn Intensities off to use their gradients alone.");
+                                  " times the line integrals of the bone found. Either they are no line integrals of "
+                                  "attenuation: turn Intensities off to use their gradients alone. Or the bone was "
+                                  "not found: give a nearer start, or a larger search.");
     }
     parameters.scale = std::max(leastScale, IntensityDifference(view, parameters).EstimateScale(images[v].data()));
     m_Metrics[1].push_back(std::make_unique<IntensityDifference>(view, parameters));

@@ -31,6 +31,10 @@ public:
                  const DeformableRadiographParameters & parameters,
                  int                                    pixels);
 
+  /** Side of the patches, pixels: about as wide a part of the bone at each resolution. */
+  static int
+  PatchAt(int pixels, const DeformableRadiographParameters & parameters);
+
   /** Compares line integrals from now on, around where the bone of this state shows. */
   void
   UseIntensities(const DeformableState & state, const Execution & execution);

@@ -195,6 +195,47 @@ TEST(DeformableRadiographRegistration, SearchesAgainWhereASearchLedAstray)
   }
 }
 
+TEST(DeformableRadiographRegistration, TurnsWhatTheViewsShow)
+{
+  const auto atlas = AtlasOf(WithTail(SolidBody(8)));
+  const auto bone = Model(atlas)->Synthesize(TrueShape, Eigen::VectorXd::Constant(1, TrueDensity));
+  auto       parameters = Parameters();
+  parameters.intensities = false;
+  const auto found = RegisterDeformable(atlas, TwoXRays(bone, Truth), RigidPose(), parameters, Execution());
+  EXPECT_EQ(found.quality, RegistrationQuality::Ok);
+  EXPECT_LT(MeanDistance(found.mesh.points, Moved(bone.points, Truth)), 1.0) << "the tail among them";
+  // 64 mm up and down from the middle, with what a move of 10 mm would show.
+  Vector3 sum = Vector3::Zero();
+  double  count = 0.0;
+  for (const Vector3 & x : atlas.mean.points)
+  {
+    sum += x.z() > 30.0 - 63.0 ? x : Vector3::Zero();
+    count += x.z() > 30.0 - 63.0 ? 1.0 : 0.0;
+  }
+  EXPECT_LT((found.pose.centre - sum / count).norm(), 3.0) << found.pose.centre.transpose();
+}
+
+TEST(DeformableRadiographRegistration, AModeThatMovesAllOfTheBoneIsSearchedInItsPlace)
+{
+  // As one that does not: the same bone comes first.
+  const auto first = [](const StatisticalModelContent & atlas) {
+    Eigen::VectorXd coefficients;
+    double          lowest = -1.0;
+    auto            parameters = Parameters();
+    parameters.intensities = false;
+    RegisterDeformable(
+      atlas, LineIntegrals(), RigidPose(), parameters, Execution(), [&](const Eigen::VectorXd & at, double cost) {
+        coefficients = lowest < 0.0 ? at : coefficients;
+        lowest = lowest < 0.0 ? cost : lowest;
+      });
+    return std::make_pair(coefficients, lowest);
+  };
+  const auto [inPlace, cost] = first(Atlas());
+  const auto [aside, costAside] = first(AtlasOf(SolidBody(8), 60.0));
+  EXPECT_LT((inPlace - aside).norm(), 0.05);
+  EXPECT_NEAR(cost, costAside, 0.05 * cost);
+}
+
 TEST(DeformableRadiographRegistration, MovesWithViewsAndStart)
 {
   auto straight = MakeRegistration();
@@ -278,12 +319,12 @@ TEST(DeformableRadiographRegistration, OneViewIsTrustedLess)
   EXPECT_TRUE(one.covariance.diagonal().head<3>().isApproxToConstant(2.0 * 2.0));
 }
 
-TEST(DeformableRadiographRegistration, OneViewMustBeMoreDistinctThanTwo)
+TEST(DeformableRadiographRegistration, ABoneThatIsNotDistinctIsSuspect)
 {
   // Noise leaves little of the edges.
   auto                             xrays = LineIntegrals();
   std::mt19937_64                  random(3);
-  std::normal_distribution<double> noise(0.0, 0.1);
+  std::normal_distribution<double> noise(0.0, 0.12);
   for (RadiographView & xray : xrays)
   {
     for (float & x : xray.values)
@@ -298,13 +339,12 @@ TEST(DeformableRadiographRegistration, OneViewMustBeMoreDistinctThanTwo)
   const auto two = RegisterDeformable(Atlas(), xrays, Truth, parameters, Execution());
   xrays.pop_back();
   const auto one = RegisterDeformable(Atlas(), xrays, Truth, parameters, Execution());
-  for (const double distinctness : { one.distinctness, two.distinctness })
+  for (const auto & result : { one, two })
   {
-    ASSERT_GT(distinctness, 0.45);
-    ASSERT_LT(distinctness, 2.0);
+    ASSERT_GT(result.distinctness, 0.45) << "which of a bone that is known is ok";
+    ASSERT_LT(result.distinctness, 1.5);
+    EXPECT_EQ(result.quality, RegistrationQuality::Suspect);
   }
-  EXPECT_EQ(two.quality, RegistrationQuality::Ok);
-  EXPECT_EQ(one.quality, RegistrationQuality::Suspect);
 }
 
 TEST(DeformableRadiographRegistration, ASurfaceThatMayLieOutsideIsCounted)

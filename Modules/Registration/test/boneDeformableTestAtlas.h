@@ -58,18 +58,19 @@ ModesOf(const Eigen::VectorXd & mean, Eigen::MatrixXd scaled)
   return modes;
 }
 
-/** The body, by a standard deviation of its modes 8 % wider along x, 6 % longer along z, and denser by 300 HU in the
- * middle; five subjects. */
+/** A mean, by a standard deviation of its modes 8 % wider along x, 6 % longer along z, and denser by 300 HU
+ * in the middle; five subjects. The first mode moves all of it `aside` mm along y, too. */
 inline StatisticalModelContent
-Atlas(int cells = 8)
+AtlasOf(MeshArrays body, double aside = 0.0)
 {
   StatisticalModelContent atlas;
-  atlas.mean = SolidBody(cells);
+  atlas.mean = std::move(body);
   const Eigen::VectorXd mean = StackPoints(atlas.mean.points);
   Eigen::MatrixXd       shape = Eigen::MatrixXd::Zero(mean.size(), 2);
   for (Eigen::Index i = 0; i < mean.size(); i += 3)
   {
     shape(i, 0) = 0.08 * (mean[i] - 10.0);
+    shape(i + 1, 0) = aside;
     shape(i + 2, 1) = 0.06 * (mean[i + 2] - 30.0);
   }
   atlas.shape = ModesOf(mean, shape);
@@ -90,6 +91,12 @@ Atlas(int cells = 8)
   atlas.densityScores.resize(5, 1);
   atlas.densityScores << 0.3, -1.4, 1.1, -0.5, 0.5;
   return atlas;
+}
+
+inline StatisticalModelContent
+Atlas(int cells = 8)
+{
+  return AtlasOf(SolidBody(cells));
 }
 } // namespace test
 } // namespace bone

@@ -50,6 +50,18 @@ Body(int cells)
   return mesh;
 }
 
+/** With a tail of some 400 mm below the middle, nearly all of it beyond the views. */
+inline MeshArrays
+WithTail(MeshArrays body)
+{
+  for (Vector3 & p : body.points)
+  {
+    const double below = std::max(0.0, 30.0 - p.z());
+    p.z() -= 0.4 * below * below;
+  }
+  return body;
+}
+
 /** A view from 700 mm along `beam` onto 1.6 mm pixels at 1000 mm. */
 inline XRayGeometry::View
 ViewOf(const Vector3 & beam, int pixels = 96)

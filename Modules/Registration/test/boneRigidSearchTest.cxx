@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <random>
 
 namespace RigidSearchTests
@@ -97,6 +98,24 @@ TEST(RigidSearch, APoseThatIsNotDistinctIsOkWhenThreeSearchesFoundIt)
   EXPECT_LT(LargestDistance(Body(12), often.pose, truth), 1.0);
 }
 
+TEST(RigidSearch, APoseThatIsNotClearIsFoundTwice)
+{
+  const RigidPose             truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
+  std::vector<RadiographView> views = TwoXRays(Body(12), truth);
+  AddNoise(views, 0.5f);
+  RigidRadiographParameters dozen = Parameters(12);
+  dozen.searchPixels = 80;
+  const auto result = Search(views, dozen);
+  ASSERT_GT(result.distinctness, 0.4);
+  ASSERT_LT(result.distinctness, 0.8);
+  EXPECT_EQ(result.quality, RegistrationQuality::Ok);
+  EXPECT_GE(result.searches, 2);
+  EXPECT_LT(LargestDistance(Body(12), result.pose, truth), 1.0);
+  // Nothing else can be asked of a single search.
+  dozen.searches = 1;
+  EXPECT_EQ(Search(views, dozen).quality, RegistrationQuality::Ok);
+}
+
 TEST(RigidSearch, AClearPoseIsLeftToTheLastAdjustment)
 {
   const RigidPose truth = PoseOf(4, -3, 5, 0.1, 0.05, -0.1);
@@ -113,6 +132,33 @@ TEST(RigidSearch, AClearPoseIsLeftToTheLastAdjustment)
   RigidRadiographParameters narrow = Parameters(1);
   narrow.searchTranslation = 4.5;
   EXPECT_EQ(Search(views, narrow).quality, RegistrationQuality::Suspect);
+}
+
+/** Largest distance between two poses of what lies above the middle. */
+double
+DistanceAbove(const MeshArrays & mesh, const RigidPose & a, const RigidPose & b)
+{
+  MeshArrays above = mesh;
+  above.points.clear();
+  std::copy_if(mesh.points.begin(), mesh.points.end(), std::back_inserter(above.points), [](const Vector3 & x) {
+    return x.z() >= Start.centre.z();
+  });
+  return LargestDistance(above, a, b);
+}
+
+TEST(RigidSearch, TurnsWhatTheViewsShow)
+{
+  // Turns about the centre of all of it move what shows farther than is searched.
+  const MeshArrays          tailed = WithTail(Body(12));
+  RigidRadiographParameters parameters = Parameters(3);
+  parameters.searchTranslation = 8.0;
+  for (const double turn : { -0.3, 0.3 })
+  {
+    const RigidPose truth = PoseOf(4, -3, 5, turn, -turn, 0.1);
+    const auto      result = SearchRigid({ tailed }, TwoXRays(tailed, truth), Start, parameters, Execution(), {});
+    EXPECT_LT(DistanceAbove(tailed, result.pose, truth), 1.5) << turn;
+    EXPECT_EQ(result.quality, RegistrationQuality::Ok) << turn;
+  }
 }
 
 /** A bent rod about (10, 20, 30), 100 mm long, along z; `bend` mm towards y at its ends. */
