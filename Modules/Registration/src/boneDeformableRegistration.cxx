@@ -92,16 +92,16 @@ private:
     m_Prior.segment<3>(3).setConstant(precision(m_P.rotationDeviation * degree));
   }
 
-  /** Searches on the coarsest images and descends from what was found; again, with more bones, where that then is not
-   * distinct. Leave-one-out over femora, of which one view showed all or two the proximal third, searches that led
-   * astray had 0.2 to 1.8 on those images, those that found the place 2.3 and more. */
+  /** Searches on the coarsest images and descends from what was found; again, with more bones, where that is not clear.
+   */
   DeformableState
   FindCoarsely(DeformableRegistrationResult & result, const Execution & execution) const
   {
-    constexpr int    searches = 8;
-    constexpr double clear = 2.0;
-    DeformableCost   cost(m_Model, m_Views, m_P, m_Resolutions.front());
-    DeformableState  best{ m_Initial, Eigen::VectorXd::Zero(m_Model.GetNumberOfCoefficients()) };
+    constexpr int searches = 8;
+    // On these images scatter leaves little of the distinctness.
+    const int       finer = m_Resolutions[std::min<std::size_t>(1, m_Resolutions.size() - 1)];
+    DeformableCost  cost(m_Model, m_Views, m_P, m_Resolutions.front());
+    DeformableState best{ m_Initial, Eigen::VectorXd::Zero(m_Model.GetNumberOfCoefficients()) };
     if (!(m_P.searchTranslation > 0.0 || m_P.searchRotation > 0.0))
     {
       this->Descend(cost, LittleBeforeFinerImages, best, result, execution);
@@ -109,12 +109,12 @@ private:
     }
     const CoarseModel model = m_Model.Coarsen(SearchTetrahedra, m_P.searchModes, execution.Silent());
     Fit               ofBest;
-    for (int k = 0; k < searches && ofBest.distinctness < clear; ++k)
+    for (int k = 0; k < searches && !ofBest.IsClear(); ++k)
     {
       const Execution part = execution.Part(static_cast<double>(k) / searches, (k + 1.0) / searches);
       DeformableState state = this->Search(cost, model, k, part.Part(0.0, 0.7));
       Fit             fit = this->Descend(cost, LittleBeforeFinerImages, state, result, part.Part(0.7, 1.0));
-      fit.distinctness = this->JudgeBone(this->Place(state), m_Resolutions.front(), part.Silent()).distinctness;
+      fit.distinctness = this->JudgeBone(this->Place(state), finer, part.Silent()).distinctness;
       // By one precision for both, as one that fits worse states a lower one.
       const double precision = std::max(fit.precision, ofBest.precision);
       if (k == 0 || precision * fit.cost + this->PriorCost(state) < precision * ofBest.cost + this->PriorCost(best))
@@ -257,6 +257,15 @@ private:
     double cost{ std::numeric_limits<double>::infinity() };
     double precision{ 0.0 };
     double distinctness{ 0.0 };
+
+    /** Leave-one-out over femora, of which one view or two showed all, or the proximal third, searches that led astray
+     * had precisions of 15 to 120 or a distinctness of 0.2 to 1.0, those that found the place 230 and more and 1.3 and
+     * more, with scatter or without. */
+    bool
+    IsClear() const
+    {
+      return precision >= 250.0 && distinctness >= 1.3;
+    }
   };
 
   /** What gain of the logarithm of the posterior is little; the spread of that is half the parameters' number. */
